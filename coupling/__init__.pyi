@@ -53,5 +53,4 @@ from .shared import (
 from .solved_plates import SolvedPlates as SolvedPlates
 from .suggestion import near as near
 from .margins import Margin as Margin
-from .borders import FAR as FAR
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

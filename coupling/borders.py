@@ -62,6 +62,8 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
         return None
     rest = at_rest(case, scene.surface, build_part(case), friction)
     own = factors_of(lambda factor: driven(scene, rest, factor))
+    if math.isclose(own.slips, own.comes_off, rel_tol=10 * EXACT):  # friction ends with contact
+        own = own._replace(slips=own.comes_off)
     unslipped = own.slips >= own.comes_off * BEFORE and 0 < own.comes_off < math.inf
     return Thresholds(
         "stroke" if strokes_alone(scene) else "frequency",

@@ -10,6 +10,7 @@ from sweeps import DISC
 
 from coupling import report, run_case
 from coupling.advice import Setting, Trial, Trials, advice_text, advise, advised_case, no_advice
+from coupling.borders import begins
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -164,6 +165,16 @@ def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
     assert f"{thresholds.comes_off_from:.4g} times" in dict(report.lines(stuck.summary))["thresholds"]
     assert f"moves it by {quantity(trial.distance, 'm')} in" in advice_text(stuck, trial)
     assert summary_of(json.loads(json.dumps(stuck.summary.as_dict()))) == stuck.summary
+
+
+def test_a_border_is_found_from_any_start_or_lies_beyond_an_end():
+    def excess(x):
+        return x**3 - 0.343
+
+    for start in (-3.0, 0.1, 0.7, 2.0):
+        assert begins(excess, start, (-3.0, 2.0), 0.4, 1e-9) == pytest.approx(0.7, abs=1e-8)
+    assert begins(excess, 0.0, (-3.0, 0.5), 0.4, 1e-9) == math.inf
+    assert begins(excess, 1.0, (0.8, 2.0), 0.4, 1e-9) == -math.inf
 
 
 def test_advice_on_a_platform_becomes_a_case():

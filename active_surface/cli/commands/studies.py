@@ -96,7 +96,7 @@ def feasibility(
         check_free(target, overwrite)
     count = STAGES + areas + answers_drives(parsed) + (PICKING + answers_drives(parsed) if pick is not None else 0)
     with stages(count) as bar:
-        result = find(parsed, *ends, across or ACROSS, bar, *strokes, threads, areas)
+        result = find(parsed, *ends, ACROSS if across is None else across, bar, *strokes, threads, areas)
         files = result.write(output, point or None)
         picked = None
         if point is not None:

@@ -141,8 +141,8 @@ def find_feasible(
         its drives at once; one with inertia does not.
     window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
-    The part's place and velocity do not matter. Moments are halved until the areas hold to TOLERANCE, at most to
-    MAX_PER_STROKE in the shortest stroke.
+    The part's place and velocity do not matter. The time between moments is halved until the areas hold to
+    TOLERANCE, at most MAX_HALVINGS times.
     """
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window, count = min(window, MAX_STROKES * stroke_time), moments_in(window, stroke_time)

@@ -6,7 +6,6 @@ case -> ground (plate, surface) -> chart of borders (slip, single runs) -> valid
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -39,7 +38,7 @@ from coupling import Progress, borders, build_drives, build_part, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
-from particle import AnyDrive, interruptible
+from particle import interruptible
 from particle.drives import drive_table, horizon
 
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
@@ -100,7 +99,8 @@ def feasibility(
         A platform, drives of which none moves, numbers that make no sense, or a mode without damping that resonates in
         a steady state.
     """
-    drives = _movers(case)
+    every = build_drives(case)  # one that rests has a frequency, too, which counts for nothing
+    drives = [drive for drive, moves in zip(every, moving(drive_table(every)), strict=True) if moves]
     frequency = max((drive.frequency for drive in drives), default=0.0)
     stroke, unit = largest_stroke(case)
     low = SPAN[0] * frequency if lowest is None else lowest
@@ -108,27 +108,25 @@ def feasibility(
     spans = STRETCHED if isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman" else STROKES
     least = spans[0] * stroke if smallest is None else smallest
     most = spans[1] * stroke if largest is None else largest
-    wrong = []
     if not case.actuators:
-        wrong.append("Input case of feasibility must have a plate on actuators; got a platform")
-    if case.actuators and not frequency:
-        wrong.append("Input case of feasibility must have a drive that moves; got none")
-    if not wrong and (fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS)):
-        wrong.append(fault)
-    if case.actuators and frequency and not 0 < least < most < math.inf:
-        wrong.append(
+        raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
+    if not frequency:
+        raise ValueError("Input case of feasibility must have a drive that moves; got none")
+    if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):
+        raise ValueError(fault)
+    if not 0 < least < most < math.inf:
+        raise ValueError(
             f"Input {'largest' if smallest is None else 'smallest'} of feasibility must leave a range of strokes; got "
             f"{quantity_text(least, unit)} to {quantity_text(most, unit)}"
         )
     if not 10 <= across <= 1000:
-        wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
-    if wrong:
-        raise ValueError("; ".join(wrong))
+        raise ValueError(f"Input across of feasibility must be in [10, 1000]; got {across}")
     with threadpool_limits(limits=1, user_api="blas"):
         factors, strokes = np.geomspace(low, high, COUNT) / frequency, (least / stroke, most / stroke)
         shortest = min(drive.stroke_time for drive in drives)
         running = [always_running(drive) for drive in drives] if case.run.start == "steady" else drives
-        whole = _window(case, running)
+        repeated = horizon(drive_table(running), 0.0)
+        whole = case.run.duration if repeated is None else min(repeated, case.run.duration)
         duration = min(case.run.duration, max(drive.delay for drive in drives) + MAX_CYCLES / frequency)
         end = max(duration, min(whole, MAX_STROKES * shortest) / min(1.0, float(factors[0])))
         ground = make_ground(
@@ -181,15 +179,3 @@ def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray
         lambda factor, end: ground.driven(factor, 1.0, end), model.chosen.modes.frequencies, stroke_time, place, whole,
         factors,
     )  # fmt: skip
-
-
-def _window(case: Case, movers: Sequence[AnyDrive]) -> float:
-    """What the drives do until they repeat themselves, at most the run's duration [s]."""
-    until = horizon(drive_table(movers), 0.0)
-    return case.run.duration if until is None else min(until, case.run.duration)
-
-
-def _movers(case: Case) -> list[AnyDrive]:
-    """The drives that move; the others have a frequency, too, which counts for nothing."""
-    drives = build_drives(case)
-    return [drive for drive, moves in zip(drives, moving(drive_table(drives)), strict=True) if moves]

@@ -115,10 +115,9 @@ class Chart:
             )
         right = min(max(bisect_right([one.frequency for one in columns], frequency), 1), len(columns) - 1)
         a, b = columns[right - 1], columns[right]
-        if math.isclose(frequency, a.frequency, rel_tol=1e-9):
-            return Limits((a.slips, a.slips), (a.lost, a.all_lost))
-        if math.isclose(frequency, b.frequency, rel_tol=1e-9):
-            return Limits((b.slips, b.slips), (b.lost, b.all_lost))
+        for one in (a, b):
+            if math.isclose(frequency, one.frequency, rel_tol=1e-9):
+                return Limits((one.slips, one.slips), (one.lost, one.all_lost))
         share = math.log(frequency / a.frequency) / math.log(b.frequency / a.frequency)
         slips, lost, all_lost = (
             _between(getattr(a, name), getattr(b, name), share) for name in ("slips", "lost", "all_lost")
@@ -156,18 +155,18 @@ def make_chart(
         columns.append(find(frequency, _guess(columns)))
         tell(len(columns), most)
     errors = [(math.inf, math.inf)] * (len(columns) - 1)  # of slips and of losses
+
+    def urgency(n: int) -> tuple[bool, bool, float]:
+        """Columns make more of borders that are not ragged: these come first."""
+        a, b = columns[n], columns[n + 1]
+        error = max(
+            error if _wide(a, b, losses) else 0.0 for error, losses in zip(errors[n], (False, True), strict=True)
+        )
+        return error > TOLERANCE, not (a.ragged or b.ragged), error
+
     while len(columns) < most:
-        wide = [
-            max(error[0] if _wide(a, b, False) else 0.0, error[1] if _wide(a, b, True) else 0.0)
-            for error, a, b in zip(errors, columns[:-1], columns[1:], strict=True)
-        ]
-        # Columns make more of borders that are not ragged: these come first.
-        urgent = [
-            (error > TOLERANCE, not (a.ragged or b.ragged), error)
-            for error, a, b in zip(wide, columns[:-1], columns[1:], strict=True)
-        ]
-        worst = max(range(len(urgent)), key=urgent.__getitem__, default=0)
-        if not urgent or not urgent[worst][0]:
+        worst = max(range(len(errors)), key=urgency)
+        if not urgency(worst)[0]:
             break
         a, b = columns[worst], columns[worst + 1]
         middle = find(math.sqrt(a.frequency * b.frequency), _guess([a, b]))

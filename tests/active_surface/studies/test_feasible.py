@@ -277,6 +277,7 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
             "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",
         ),
         (["--areas", "--across", "3"], "--across must be in [10, 1000]; got 3"),
+        (["--areas", "--across", "0"], "--across must be in [10, 1000]; got 0"),
         (["--across", "30"], "--across must not be given without --areas, whose places it counts"),
         (
             ["--pick", "600Hz"],
