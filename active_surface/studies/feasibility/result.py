@@ -114,12 +114,10 @@ class Feasibility:
             "slips_from": _finite(self.stroke * limits.slips[0]),
             "lost_from": _finite(self.stroke * limits.lost[0]),
             "all_lost_from": _finite(self.stroke * limits.lost[1]),
-            "valid_to": _finite(self.stroke * self._valid_at(1.0)),
+            "valid_to": _finite(
+                self.stroke * float(np.interp(0.0, np.log([k.frequency for k in columns]), self.valid))
+            ),
         }
-
-    def _valid_at(self, factor: float) -> float:
-        """The factor of strokes up to which the model is valid at a factor of frequency."""
-        return float(np.interp(math.log(factor), np.log([one.frequency for one in self.chart.columns]), self.valid))
 
     def _map(self) -> dict[str, Any]:
         """The borders by frequency; None: beyond the largest stroke looked at."""
