@@ -65,7 +65,7 @@ def _nearest_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
     return [
         ("nowhere", "no frequency and stroke looked at moves the part without losing it"),
         ("nearest", f"the pull is {near['share']:.3g} of what friction holds at {at}, {end}"),
-        ("advice", "`active-surface advise` tries less friction and other starts, too"),
+        ("advice", "`active-surface advise CASE` tries less friction and other starts, too"),
     ]
 
 
