@@ -8,6 +8,7 @@ from .surface.file import read_surface as read_surface, write_surface as write_s
 from .surface.motion import surface_motion as surface_motion
 
 # Not public: for the packages that build on this one.
+from .batch import FAILURES as FAILURES, PathTask as PathTask, follow as follow, follow_each as follow_each
 from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import (
@@ -38,7 +39,9 @@ from .results import Output as Output
 from .run import (
     Rerun as Rerun,
     build_scene as build_scene,
+    check_case as check_case,
     follow_part as follow_part,
+    one_blas_thread as one_blas_thread,
     quick_summary as quick_summary,
     rerun as rerun,
     run_over as run_over,
@@ -50,7 +53,8 @@ from .shared import (
     answers_drives as answers_drives,
     shared_surface as shared_surface,
 )
-from .solved_plates import SolvedPlates as SolvedPlates
+from .plate_figures import plate_figures as plate_figures
+from .solved_plates import SolvedPlates as SolvedPlates, ground_key as ground_key
 from .suggestion import near as near
 from .margins import Margin as Margin
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

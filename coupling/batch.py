@@ -1,33 +1,105 @@
-"""Batch: many cases at once, each plate solved once and all paths followed side by side."""
+"""Batch: many paths at once, those over one surface side by side, and many cases with each plate solved once."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
-
-from threadpoolctl import threadpool_limits
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final, NamedTuple
 
 from coupling.case import Case, RunCase
-from coupling.progress import Progress, silent
+from coupling.part import build_friction, build_part
+from coupling.progress import Progress, ProgressCallback, no_progress, silent
 from coupling.result import Result
-from coupling.run import build_friction, build_part, follow_part, tighter_tolerance
+from coupling.run import check_case, one_blas_thread, simulate_run, tighter_run
 from coupling.scene import PlateScene, Scene
 from coupling.shared import answers_drives
 from coupling.solved_plates import SolvedPlates
 from coupling.summary import summarise
-from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible, simulate_many
+from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible, processors, simulate_many
 from particle.friction import Contact
+
+AT_ONCE: Final = 256  # paths in memory at a time: each takes 0.13 MB, however short; larger batches are slower
+FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
+
+
+class PathTask(NamedTuple):
+    """A path to be followed."""
+
+    surface: SurfaceMotion
+    part: Micropart
+    friction: Contact
+    run: RunCase
+    drives: Sequence[AnyDrive] | None = None  # one an actuator; None: the surface's own
+
+
+def follow(
+    tasks: Sequence[PathTask], threads: int | None = None, tell: ProgressCallback = no_progress
+) -> list[Trajectory]:
+    """The path of each task, with the bits of a single run; raises as `simulate` does for the first that has none.
+
+    Paths over one surface object with equal runs are followed side by side, at most `threads` at a time.
+    """
+    found: dict[int, Trajectory] = {}
+    for number, path in follow_each(tasks, threads):
+        if isinstance(path, Exception):
+            raise path
+        found[number] = path
+        tell(len(found), len(tasks))
+    return [found[number] for number in range(len(tasks))]
+
+
+def follow_each(tasks: Sequence[PathTask], threads: int | None = None) -> Iterator[tuple[int, Trajectory | Exception]]:
+    """Yield the number of each task with its path, or with the error because of which it has none."""
+    groups: dict[tuple[int, RunCase, bool], list[int]] = defaultdict(list)
+    for number, task in enumerate(tasks):
+        groups[id(task.surface), task.run, task.drives is None].append(number)
+    for group in groups.values():
+        for first in range(0, len(group), AT_ONCE):
+            lot = group[first : first + AT_ONCE]
+            yield from zip(lot, _paths([tasks[number] for number in lot], threads), strict=True)
+
+
+def _paths(tasks: Sequence[PathTask], threads: int | None) -> Sequence[Trajectory | Exception]:
+    """The paths of tasks over one surface with one run; where they fail together each is tried by itself."""
+    try:
+        return _together(tasks, threads)
+    except FAILURES as error:
+        return [error] if len(tasks) == 1 else [path for task in tasks for path in _paths([task], threads)]
+
+
+def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory]:
+    run = tasks[0].run
+    if run.scheme != "events":
+        pool = ThreadPoolExecutor(threads or processors())
+        try:
+            return interruptible(lambda: list(pool.map(_by_steps, tasks)))
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+    return simulate_many(
+        tasks[0].surface,
+        [task.part for task in tasks],
+        [task.friction for task in tasks],
+        run.duration,
+        run.gravity,
+        run.tolerance,
+        run.after_detachment,
+        [task.drives for task in tasks if task.drives is not None] or None,
+        threads,
+    )
+
+
+def _by_steps(task: PathTask) -> Trajectory:
+    surface = task.surface if task.drives is None else task.surface.driven_by(task.drives)
+    return simulate_run(surface, task.part, task.friction, task.run)
 
 
 class _Job(NamedTuple):
-    """A case whose path is to be followed."""
+    """A case that is run."""
 
-    number: int
     case: Case
     scene: Scene
     friction: Contact
-    part: Micropart
 
 
 def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progress = silent) -> list[Result]:
@@ -54,26 +126,25 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
     Raises
     ------
     ValueError
-        A case cannot be run; names it by its number from 0. Or `threads` is less than 1.
+        A case cannot be run; names it by its number from 0. Or `threads` is less than 1, or `cases` are no cases.
     Interrupted
         Ctrl-C.
     """
     if threads is not None and threads < 1:
         raise ValueError(f"Input threads of run_cases must be at least 1; got {threads!r}")
+    if isinstance(cases, (Case, str)) or not isinstance(cases, Sequence):
+        raise ValueError(f"Input cases of run_cases must be a list of cases; got {cases!r}")
+    for number, case in enumerate(cases):
+        check_case(case, f"cases[{number}] of run_cases")
     plates = SolvedPlates(progress)
-    # Many small systems: BLAS threads would only wait for each other.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         jobs = [_job(number, case, plates) for number, case in enumerate(cases)]
-        paths: dict[int, tuple[Trajectory, Trajectory]] = {}
+        tasks = [_task(job, tighter, plates) for job in jobs for tighter in (False, True)]
         with progress("Following the parts") as tell:
-            for group in _groups(jobs):
-                both = (_follow(group, threads, tighter) for tighter in (False, True))
-                paths |= {job.number: pair for job, *pair in zip(group, *both, strict=True)}  # type: ignore[misc]
-                tell(len(paths), len(jobs))
+            paths = follow(tasks, threads, lambda done, of: tell(done // 2, of // 2))
         results = []
         with progress("Checking the model's validity") as tell:
-            for job in jobs:
-                path, tighter = paths[job.number]
+            for job, path, tighter in zip(jobs, paths[::2], paths[1::2], strict=True):
                 summary = summarise(job.case, job.scene, path, tighter, job.friction)
                 results.append(Result(job.case, job.scene, path, summary))
                 tell(len(results), len(jobs))
@@ -82,35 +153,15 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
 
 def _job(number: int, case: Case, plates: SolvedPlates) -> _Job:
     try:
-        return _Job(number, case, plates.scene(case), build_friction(case), build_part(case))
+        return _Job(case, plates.scene(case), build_friction(case))
     except ValueError as error:
         raise ValueError(f"Input cases[{number}] of run_cases cannot be run: {error}") from error
 
 
-def _groups(jobs: Sequence[_Job]) -> Iterator[list[_Job]]:
-    """Yield jobs that are followed side by side: over one plate with the same run."""
-    groups: dict[tuple[int, RunCase], list[_Job]] = defaultdict(list)
-    for job in jobs:
-        alone = job.case.run.scheme != "events" or not isinstance(job.scene, PlateScene) or answers_drives(job.case)
-        groups[-1 - job.number if alone else id(job.scene.surface.store), job.case.run].append(job)
-    yield from groups.values()
-
-
-def _follow(group: Sequence[_Job], threads: int | None, tighter: bool) -> list[Trajectory]:
-    """The paths of jobs over one surface, or of a single job."""
-    first, run = group[0], group[0].case.run
-    if len(group) == 1:
-        return [interruptible(follow_part, first.case, first.scene.surface, first.friction, tighter)]
-    surface: SurfaceMotion = first.scene.surface
-    drives: list[Sequence[AnyDrive]] = [job.scene.lifts for job in group]
-    return simulate_many(
-        surface,
-        [job.part for job in group],
-        [job.friction for job in group],
-        run.duration,
-        run.gravity,
-        tighter_tolerance(run) if tighter else run.tolerance,
-        run.after_detachment,
-        drives,
-        threads,
-    )
+def _task(job: _Job, tighter: bool, plates: SolvedPlates) -> PathTask:
+    """The path of a run, or the one that it is compared with; over a surface of many cases where they share one."""
+    case, surface, drives = job.case, job.scene.surface, None
+    if case.run.scheme == "events" and isinstance(job.scene, PlateScene) and not answers_drives(case):
+        surface, drives = plates.surface(case, list, case.run.duration), job.scene.lifts
+    run = tighter_run(case.run, surface) if tighter else case.run
+    return PathTask(surface, build_part(case), job.friction, run, drives)

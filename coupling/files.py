@@ -63,8 +63,12 @@ def check_folder(folder: Path) -> None:
     made = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
     if not made.is_dir():
         raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
-    if not os.access(made, os.W_OK):
-        raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")
+    try:
+        os.rmdir(tempfile.mkdtemp(prefix=".active-surface-", dir=made))  # os.access says yes to root, even in /proc
+    except OSError:
+        raise ValueError(
+            f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it"
+        ) from None
 
 
 def check_room(folder: Path, needed: int, kept: str = "") -> None:

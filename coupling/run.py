@@ -7,9 +7,9 @@ case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 from warnings import warn
 
 from threadpoolctl import threadpool_limits
@@ -18,6 +18,7 @@ import particle
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
 from coupling.environment import versions
+from coupling.files import check_folder
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
 from coupling.result import Result
@@ -25,7 +26,7 @@ from coupling.results import CaseRecord, Output, SavedRun, record_of, write_resu
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from fem_plate import PlateShapes
-from particle import SurfaceMotion, Trajectory, interruptible
+from particle import Micropart, SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 
@@ -73,18 +74,30 @@ def run_case(
     Raises
     ------
     ValueError
-        The case cannot be run, `shapes` are of another plate or other actuators or, before any work, NAME.csv or
-        NAME.surface.h5 holds something else.
+        The case cannot be run, `shapes` are of another plate or other actuators or, before any work, the folder cannot
+        be made or written to, or NAME.csv or NAME.surface.h5 holds something else.
     OSError
         A file that the case reads is gone.
     """
+    check_case(case, "case of run_case")
     wanted = None if output is None else Output(Path(output), csv, save_surface, forces, picture)
     if wanted is not None:
+        check_folder(wanted.folder)
         wanted.check(case.name)
-    # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         record = None if wanted is None else record_of(case)  # its files may be others when the path is found
         return run_over(case, build_scene(case, progress, shapes), wanted, progress, record)
+
+
+def check_case(case: object, where: str) -> None:
+    """Raises ValueError unless it is a case."""
+    if not isinstance(case, Case):
+        raise ValueError(f"Input {where} must be a Case, as read_case reads it from a file; got {case!r}")
+
+
+def one_blas_thread() -> AbstractContextManager[object]:
+    """Has BLAS use one thread in its block: with many small systems several take two to four times as long."""
+    return threadpool_limits(limits=1, user_api="blas")
 
 
 def run_over(
@@ -158,22 +171,32 @@ def build_surface(case: Case) -> SurfaceMotion:
     return build_scene(case).surface
 
 
-def tighter_tolerance(run: RunCase) -> float:
-    """The tolerance of the path that one is compared with."""
-    return max(run.tolerance / 100, 1e-13)
-
-
 def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: bool = False) -> Trajectory:
     """The part's path over the surface; tighter: at a hundredth of the tolerance, or with half the time step."""
-    part, run = build_part(case), case.run
-    tolerance = tighter_tolerance(run) if tighter else run.tolerance
-    steps: dict[str, Any] = {}
-    if run.scheme != "events" and (run.time_step or tighter):
-        time_step = run.time_step or default_step(surface, run.duration)
-        steps = {"time_step": time_step / 2 if tighter else time_step}
+    return simulate_run(surface, build_part(case), friction, tighter_run(case.run, surface) if tighter else case.run)
+
+
+def tighter_run(run: RunCase, surface: SurfaceMotion) -> RunCase:
+    """The run that a path is compared with: at a hundredth of its tolerance, or with half its time step."""
+    if run.scheme == "events":
+        return run.model_copy(update={"tolerance": max(run.tolerance / 100, 1e-13)})
+    step = run.time_step or default_step(surface, run.duration)
+    return run.model_copy(update={"time_step": step / 2})
+
+
+def simulate_run(surface: SurfaceMotion, part: Micropart, friction: Contact, run: RunCase) -> Trajectory:
+    """The path of a part by the settings of a run; raises as `simulate` does."""
     try:
         return particle.simulate(
-            surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps
+            surface,
+            part,
+            friction,
+            run.duration,
+            run.gravity,
+            run.tolerance,
+            run.scheme,
+            run.after_detachment,
+            None if run.scheme == "events" else run.time_step,
         )
     except MemoryError:
         text = "run.duration must be shorter, as the steps of the path take more memory than there is"

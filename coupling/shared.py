@@ -11,10 +11,11 @@ from coupling.case import Case, PlateCase
 from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
-from coupling.scene import actuator_stiffness, build_plate, stretch_model, vibration_model
+from coupling.scene import PlateScene, actuator_stiffness, build_plate, stretch_model, vibration_model
 from coupling.stretch import Response, Stretch, StretchModel, room_beyond
 from coupling.surface import ActuatedSurface
 from coupling.vibration import Vibration, VibrationModel, always_running
+from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion
 
 
@@ -41,10 +42,20 @@ class VibratingSurface(ActuatedSurface):
 
         Also ValueError where a mode without damping resonates in the steady state.
         """
+        return self._moved_by(self._vibration(drives))
+
+    def scene(self, drives: Sequence[AnyDrive], shapes: PlateShapes) -> PlateScene:
+        """The scene of a case with these drives; shapes: of the plate.  Raises as `driven_by` does."""
+        vibration = self._vibration(drives)
+        return PlateScene(shapes.plate, shapes, vibration.drives, self._moved_by(vibration), vibration=vibration)
+
+    def _vibration(self, drives: Sequence[AnyDrive]) -> Vibration:
         if wrong := self.drive_faults({"drives": drives}):
             raise ValueError("; ".join(wrong))
-        lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
-        return self.moved_by([*lifts, *self.model.modal_drives(lifts)])
+        return Vibration.under(self.model, [always_running(one) for one in drives] if self.model.steady else drives)
+
+    def _moved_by(self, vibration: Vibration) -> SurfaceMotion:
+        return self.moved_by([*vibration.drives, *vibration.modal_drives])
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -73,11 +84,21 @@ class StretchedSurface(ActuatedSurface):
 
         Also ValueError where these pass the heights that its model is good for, or find no equilibrium.
         """
+        return self._moved_by(self._stretch(drives))
+
+    def scene(self, drives: Sequence[AnyDrive], shapes: PlateShapes) -> PlateScene:
+        """The scene of a case with these drives; shapes: of the plate.  Raises as `driven_by` does."""
+        stretch = self._stretch(drives)
+        return PlateScene(shapes.plate, shapes, stretch.drives, self._moved_by(stretch), stretch)
+
+    def _stretch(self, drives: Sequence[AnyDrive]) -> Stretch:
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
         lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
-        corrections = self.model.corrections(lifts, self.end, self._response)
-        return self.moved_by([*lifts, *corrections.drives], corrections.in_plane)
+        return Stretch(self.model, lifts, self.model.corrections(lifts, self.end, self._response), self.end)
+
+    def _moved_by(self, stretch: Stretch) -> SurfaceMotion:
+        return self.moved_by(stretch.moving_drives, stretch.corrections.in_plane)
 
     @property
     def _response(self) -> Response | None:
@@ -104,13 +125,17 @@ def answers_drives(case: Case) -> bool:
 
 
 def shared_surface(
-    case: Case, sets: Sequence[Sequence[AnyDrive]], duration: float, progress: Progress = silent
+    case: Case,
+    sets: Sequence[Sequence[AnyDrive]],
+    duration: float,
+    progress: Progress = silent,
+    shapes: PlateShapes | None = None,
 ) -> SurfaceMotion:
     """The moving surface of a case whose drives are exchanged by `driven_by`.
 
     sets: of drives that stand for all that are to come, one an actuator each; they count where the plate stretches or
         vibrates.
-    duration: s, of the longest run.
+    duration: s, of the longest run.  shapes: of the plate, where they are known; one that stretches makes its own.
     Raises ValueError where the plate cannot be solved, or its heights take too many full solutions.
     """
     plate = case.plate
@@ -121,7 +146,7 @@ def shared_surface(
     options: dict[str, Any] = {"tolerance": case.run.surface_tolerance, "half_thickness": top}
     running = [_running(case, drives) for drives in sets]
     if plate.theory == "linear":
-        return _vibrating(longest, plate, running, options, progress)
+        return _vibrating(longest, plate, shapes or plate_shapes(case, progress), running, options, progress)
     with progress("Solving the stretching plate") as tell:
         model = stretch_model(longest, plate, build_plate(plate), running, tell)
     with progress("Fitting the surface"):
@@ -133,17 +158,23 @@ def _running(case: Case, drives: Sequence[AnyDrive]) -> list[AnyDrive]:
     return [always_running(drive) for drive in drives] if case.run.start == "steady" else list(drives)
 
 
+def plate_shapes(case: Case, progress: Progress) -> PlateShapes:
+    """The influence shapes of a case with a plate that answers its drives."""
+    assert isinstance(case.plate, PlateCase)
+    with progress("Solving the plate") as tell:
+        points = [one.position for one in case.actuators]
+        return build_plate(case.plate).influence(points, actuator_stiffness(case), tell=tell)
+
+
 def _vibrating(
     case: Case,
     plate_case: PlateCase,
+    shapes: PlateShapes,
     sets: Sequence[Sequence[AnyDrive]],
     options: Mapping[str, Any],
     progress: Progress,
 ) -> VibratingSurface:
-    with progress("Solving the plate") as tell:
-        plate = build_plate(plate_case)
-        shapes = plate.influence([one.position for one in case.actuators], actuator_stiffness(case), tell=tell)
     with progress("Finding the modes") as tell:
-        model = vibration_model(case, plate_case, plate, shapes, sets, tell)
+        model = vibration_model(case, plate_case, shapes.plate, shapes, sets, tell)
     with progress("Fitting the surface"):
         return VibratingSurface.under(model, sets[0], **options)
