@@ -16,9 +16,8 @@ from active_surface.app.aiming import Search
 from active_surface.app.drawn import path_of, unit_of
 from active_surface.app.full import Full, Superseded, full_answer
 from active_surface.app.lanes import Lanes, tidy
-from active_surface.app.quick import ground_of
 from active_surface.steering import Aimed
-from coupling import Progress, ProgressCallback, report
+from coupling import Progress, ProgressCallback, ground_key, report
 from coupling.case import Case, InputError
 from particle import Trajectory
 
@@ -62,7 +61,7 @@ class Answers:
         self.send: Send = lambda message: None  # while nobody is connected
         self.full: Full | None = None
         self._lanes, self._turn, self._stop = lanes, 0, np.zeros(1, np.int64)
-        self._ground = ""  # what models of the plate of the case follow from
+        self._ground = ("", 0.0)  # what models of the plate of the case follow from
         self._search: Search | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -76,13 +75,13 @@ class Answers:
     def close(self) -> None:
         """The tab is gone for good."""
         self.forget()
-        self._ground = ""
+        self._ground = ("", 0.0)
         self.send = lambda message: None
         self.stop()
 
     async def answer(self, case: Case, saved: bool, rest: bool, page_turn: object = None) -> None:
         """The quick path of a case, and all of its run where the hand rests; saved: whether it is as it is saved."""
-        turn, self._ground = self._turn, ground_of(case)
+        turn, self._ground = self._turn, (ground_key(case), case.run.duration)
         try:
             quick = await self._lanes.run(self._lanes.quick, self._lanes.quick_paths.of, case)
         except Exception as error:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
 
-from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part, shared_surface
+from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part
 from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
-from particle import Stopped, SurfaceMotion, Trajectory, stoppable
+from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
 BUDGET: Final = 0.01  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
@@ -26,7 +26,6 @@ CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer 
 COARSE: Final = 1e-4  # the surface's tolerance there
 MAX_ACTUATORS: Final = 60  # of a plate that is solved coarsely while something is dragged
 ROOM: Final = (0.5, 1.25)  # of the strokes: those that a model of a plate that stretches is made for
-KEPT: Final = 2  # such models
 
 LINEAR: Final = "linear theory without inertia"
 PLATE: Final = "a coarse plate"
@@ -44,9 +43,8 @@ class QuickPaths:
     """Finds paths fast, over plates that are known or solved coarsely."""
 
     def __init__(self, plates: SolvedPlates) -> None:
-        self._plates, self._lock = plates, threading.Lock()
+        self._plates = plates
         self._coarse = SolvedPlates(keep=4)
-        self._models: OrderedDict[str, SurfaceMotion] = OrderedDict()
         self._pace: dict[tuple[float, int], float] = {}  # what `_work` gives
 
     def of(self, case: Case) -> Quick | None:
@@ -85,14 +83,8 @@ class QuickPaths:
 
     def prepare(self, case: Case, progress: Progress) -> None:
         """Make the model that quick paths over a plate that stretches or vibrates take, unless it is there."""
-        if not answers_drives(case) or self._model(case) is not None:
-            return
-        sets = [lifts_of(scaled_case(case, 1.0, room)) for room in ROOM]
-        surface = shared_surface(case, sets, case.run.duration, progress)
-        with self._lock:
-            self._models[ground_of(case)] = surface
-            while len(self._models) > KEPT:
-                self._models.popitem(last=False)
+        if answers_drives(case):
+            self._plates.surface(case, partial(_room_of, case), case.run.duration, progress)
 
     def _work(self, tolerance: float, actuators: int) -> float:
         """The work [s] for a second of a path, lately, at a tolerance with so many actuators; 0: not known."""
@@ -102,9 +94,9 @@ class QuickPaths:
         """A surface for a case, and what is coarse about it."""
         if not answers_drives(case):
             return self._bending(case)
-        if (model := self._model(case)) is not None:
+        if (model := self._plates.known_surface(case, case.run.duration)) is not None:
             try:
-                return model.driven_by(lifts_of(case)), "a model made for these strokes"  # type: ignore[attr-defined]
+                return model.driven_by(lifts_of(case)), "a model made for these strokes"
             except ValueError:  # other strokes than the model is made for
                 pass
         linear = _plate_with(case, theory="linear", in_plane_supports="immovable", inertia=False)
@@ -123,10 +115,6 @@ class QuickPaths:
         run = case.run.model_copy(update={"surface_tolerance": COARSE})
         return self._coarse.scene(coarse.model_copy(update={"run": run})).surface, PLATE
 
-    def _model(self, case: Case) -> SurfaceMotion | None:
-        with self._lock:
-            return self._models.get(ground_of(case))
-
 
 @contextmanager
 def _limited() -> Iterator[None]:
@@ -142,14 +130,11 @@ def _limited() -> Iterator[None]:
         timer.cancel()
 
 
+def _room_of(case: Case) -> list[list[AnyDrive]]:
+    """The drives that a model of a plate that answers them is made for."""
+    return [lifts_of(scaled_case(case, 1.0, room)) for room in ROOM]
+
+
 def _plate_with(case: Case, **changes: object) -> Case:
     """The case with other values in its plate's table."""
     return case.model_copy(update={"plate": case.plate.model_copy(update=changes)})
-
-
-def ground_of(case: Case) -> str:
-    """What a model of a plate follows from."""
-    places = [(one.position, one.stiffness, one.force is None) for one in case.actuators]
-    return (
-        f"{case.plate.model_dump_json()} {places} {case.run.duration!r} {case.run.start} {case.run.surface_tolerance!r}"
-    )

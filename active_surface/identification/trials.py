@@ -12,9 +12,9 @@ from active_surface.identification.blocks import Blocks
 from active_surface.identification.parameters import case_with
 from active_surface.identification.track import Track
 from active_surface.parameter import Parameter
-from coupling import build_friction, build_part
+from coupling import PathTask, build_friction, build_part, follow
 from coupling.case import Case
-from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
+from particle import Micropart, SurfaceMotion, Trajectory
 from particle.friction import Contact
 from particle.surface import rim_gap
 
@@ -82,13 +82,10 @@ class Trials:
 
     def paths(self, number: int, runs: Sequence[tuple[Micropart, Contact]]) -> list[Trajectory]:
         """The paths of parts with their friction, until a track ends."""
-        if not runs:
-            return []
         case, surface, track, _ = self.recordings[number]
         self.followed += len(runs)
-        run, parts, laws = case.run, [part for part, _ in runs], [law for _, law in runs]
-        options = run.gravity, run.tolerance, run.after_detachment, None, self._threads
-        return simulate_many(surface, parts, laws, float(track.time[-1]), *options)
+        run = case.run.model_copy(update={"duration": float(track.time[-1])})
+        return follow([PathTask(surface, part, law, run) for part, law in runs], self._threads)
 
     def losses(self, residuals: FloatArray) -> FloatArray:
         """Of each track (N,), m^2 or m."""

@@ -7,21 +7,20 @@ on the same surface.  "plate": the same on a plate of finite elements, which all
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
 from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters, Place
 from active_surface.paper.profiles import profile_outline, profile_surface
-from coupling import surface_motion
+from coupling import PathTask, follow, one_blas_thread, surface_motion
+from coupling.case import RunCase
 from fem_plate import DiscShapes, Plate, Shapes
 from meshes import Outline, disc
-from particle import Drive, EventKind, Micropart, SurfaceMotion, Trajectory, processors, simulate, simulate_many
+from particle import Drive, EventKind, Micropart, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
 PAPER, CLOSED, PLATE = "paper", "closed", "plate"
@@ -59,7 +58,7 @@ class Bench:
         solid = model == PLATE
         key = (model if solid else "profiles", "two" if solid and actuators != "one" else actuators)
         if key not in self.grounds:
-            with threadpool_limits(limits=1, user_api="blas"):
+            with one_blas_thread():
                 self.grounds[key] = self._make(*key)
         return self.grounds[key]
 
@@ -111,16 +110,9 @@ class Bench:
             for (x, y), (u, v) in zip(places + ground.offset, speeds, strict=True)
         ]
         law = p.friction if friction is None else friction
-        if model == PAPER:
-
-            def one(part: Micropart) -> Trajectory:
-                return simulate(surface, part, law, duration, p.gravity, scheme="paper", time_step=p.time_step)
-
-            with ThreadPoolExecutor(processors()) as pool:
-                results = list(pool.map(one, parts))
-        else:
-            results = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
-        return [Path(trajectory, ground.offset) for trajectory in results]
+        steps = {"scheme": "paper", "time_step": p.time_step} if model == PAPER else {}
+        run = RunCase(duration=duration, gravity=p.gravity, tolerance=tolerance or p.tolerance, **steps)
+        return [Path(one, ground.offset) for one in follow([PathTask(surface, part, law, run) for part in parts])]
 
     def count(self, model: str) -> int:
         """How many starts there are for a model."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
 from active_surface.steering.disturbances import Disturbance, disturbed
 from active_surface.studies import contact_of, start_faults
-from coupling import build_drives, build_part
+from coupling import PathTask, build_drives, build_part, follow, one_blas_thread
 from coupling.case import ActuatorCase, Case
-from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
+from particle import Micropart, Outcome, SurfaceMotion, Trajectory
 from particle.friction import Contact, ScaledFriction
 
-AT_ONCE = 256  # paths in a batch; larger ones are slower
 SETTLING = 1e-3  # s: times its speed, the extra distance of a part that still moves
 UNSETTLED = 0.1  # of the surface's size: smallest distance of a part that the drives will move again
 LOST = 3.0  # of the surface's size: extra distance of a lost part, beyond all others
@@ -30,28 +28,17 @@ class Paths:
 
     def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
-        trajectories: list[Trajectory] = []
-        # Many small systems: BLAS threads would only wait for each other.
-        with threadpool_limits(limits=1, user_api="blas"):
-            for start in range(0, len(runs), AT_ONCE):
-                trajectories += self._chunk(runs[start : start + AT_ONCE])
+        cases = [disturbed(driven(self.case, actuators), way.changes) for actuators, way in runs]
+        parts = self._parts(cases, np.array([way.shift for _, way in runs]).reshape(-1, 2))
+        laws = [self._contact(case, way.friction) for case, (_, way) in zip(cases, runs, strict=True)]
+        tasks = [
+            PathTask(self.surface, part, law, self.case.run, build_drives(case))
+            for part, law, case in zip(parts, laws, cases, strict=True)
+        ]
+        with one_blas_thread():
+            trajectories = follow(tasks, self._threads)
         self.count += len(trajectories)
         return trajectories
-
-    def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
-        run = self.case.run
-        cases = [disturbed(driven(self.case, actuators), way.changes) for actuators, way in runs]
-        return simulate_many(
-            self.surface,
-            self._parts(cases, np.array([way.shift for _, way in runs])),
-            [self._contact(case, way.friction) for case, (_, way) in zip(cases, runs, strict=True)],
-            run.duration,
-            run.gravity,
-            run.tolerance,
-            run.after_detachment,
-            [build_drives(case) for case in cases],
-            self._threads,
-        )
 
     def _contact(self, case: Case, factor: float) -> Contact:
         contact = contact_of(case.friction)

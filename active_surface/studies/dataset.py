@@ -13,10 +13,10 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
-from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
+from active_surface.studies.variants import heights_key
 from coupling import check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves

@@ -5,45 +5,41 @@ A record depends on the study and the number of its path alone: neither on threa
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Callable, Generator, Iterable, Sequence
+from functools import partial
+from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
-from active_surface.arrays import IntArray
-from active_surface.studies.heights import drive_sets, largest
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.studies.record import Records, new_records, put
 from active_surface.studies.refusal import case_faults, contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
-from active_surface.studies.variants import Base, Variants
-from coupling import build_drives, build_part, shared_surface, silent
-from coupling.case import Case, InputError, PlatformCase, RunCase
-from coupling.scene import platform_scene
-from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
-from particle.friction import Contact
+from active_surface.studies.variants import case_at, drive_sets, drives_vary, is_deep, largest, longest_duration
+from coupling import (
+    FAILURES,
+    PathTask,
+    SolvedPlates,
+    build_drives,
+    build_part,
+    follow_each,
+    ground_key,
+    one_blas_thread,
+    silent,
+)
+from coupling.case import Case, InputError, PlatformCase
+from coupling.scene import Scene, platform_scene
+from particle import SurfaceMotion, Trajectory
 
 AT_ONCE: Final = 1.0  # s, about, of work in a chunk
 A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about: of work for a path, and for each cycle of its fastest drive
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about: of work for one of these
 SURFACES: Final = 16  # kept at most: each takes some 5 MB
-HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
 TOGETHER: Final = 64  # paths that `follow` computes side by side
-FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
-
-
-class _Path(NamedTuple):
-    """A path to compute."""
-
-    row: int
-    case: Case
-    part: Micropart
-    friction: Contact
-
 
 Visit = Callable[[int, Trajectory], object]  # is called with the number of a path and the path
-_Group = tuple[list[_Path], SurfaceMotion, RunCase]
 
 
 class Engine:
@@ -51,10 +47,10 @@ class Engine:
 
     def __init__(self, study: Study, threads: int | None = None) -> None:
         self.study, self._threads = study, threads
-        self.variants = Variants(study.case, study.points.axes)
-        self._surfaces: dict[str, SurfaceMotion | str] = {}
-        self._kept = min(self.variants.grounds(study.points), SURFACES)
-        self._duration = max(largest(study.points, "run.duration"), default=study.case.run.duration)
+        self._deep = [axis for axis in study.points.axes if is_deep(study.case, axis)]
+        self._plates = SolvedPlates(keep=min(self._plates_at_a_time(), SURFACES))
+        self._failed: dict[str, str] = {}  # why there is nothing to move over
+        self._duration = longest_duration(study)
         self.paths = len(study.points)
         self.chunk_length = self._chunk_length()
 
@@ -66,12 +62,25 @@ class Engine:
         case, points = self.study.case, self.study.points
         if isinstance(case.plate, PlatformCase):
             scene = platform_scene(case.plate, silent)
-            drives, base = [*scene.lifts, *scene.base], A_PLATFORM
+            drives, plate = [*scene.lifts, *scene.base], A_PLATFORM
         else:
-            drives, base = build_drives(case), A_PLATE
+            drives, plate = build_drives(case), A_PLATE
         fastest = max((*(drive.frequency for drive in drives), *largest(points, "frequency")), default=0.0)
-        each = A_PATH + A_CYCLE * self._duration * fastest + base / self.variants.paths_of_a_base(points)
+        each = A_PATH + A_CYCLE * self._duration * fastest + plate / self._paths_of_a_plate()
         return max(int(AT_ONCE / each), 1)
+
+    def _paths_of_a_plate(self) -> int:
+        """How many paths that follow each other share what they move over, about."""
+        points = self.study.points
+        if not self._deep:
+            return len(points)
+        shared = [len(axis.values) for axis in points.axes if axis not in self._deep]
+        return points.repeats * (math.prod(shared) if points.sampling == "grid" else 1)
+
+    def _plates_at_a_time(self) -> int:
+        """How many different things to move over are to be kept at a time so that none is made twice."""
+        listed = [len(axis.values) for axis in self._deep]
+        return 1 if self.study.points.sampling == "grid" or 0 in listed else math.prod(listed)
 
     def records_of(self, chunks: Iterable[IntArray]) -> Generator[tuple[IntArray, Records], None, None]:
         """Yield chunks and their records, one after the other."""
@@ -90,11 +99,12 @@ class Engine:
         """Compute the paths of these ascending numbers again and visit each but the refused, with its number."""
         every = list(numbers)
         for first in range(0, len(every), TOGETHER):
-            self._visit(every[first : first + TOGETHER], visit)
+            together = every[first : first + TOGETHER]
+            self._computed(together, lambda row, path, together=together: visit(together[row], path))  # type: ignore[misc]
 
-    def _visit(self, together: list[int], visit: Visit) -> None:
-        """The same for numbers of paths that are computed side by side."""
-        self._computed(together, lambda row, path: visit(together[row], path))
+    def scene(self, case: Case) -> Scene:
+        """The scene of a case of the study, over the surface that its paths share; raises as `SolvedPlates` does."""
+        return self._plates.scene_among(case, partial(drive_sets, self.study, case), self._duration)
 
     def _computed(
         self, numbers: Sequence[int] | IntArray, visit: Visit | None = None
@@ -102,92 +112,63 @@ class Engine:
         """The records, and by row what is wrong with the refused."""
         records = new_records(len(numbers))
         wrong: dict[int, list[str]] = {}
-        # Many small systems: BLAS threads would only wait for each other.
-        with threadpool_limits(limits=1, user_api="blas"):
-            for paths, surface, run in self._groups(numbers, records, wrong):
-                for first in range(0, len(paths), HELD):
-                    self._follow(records, wrong, paths[first : first + HELD], surface, run, visit)
-        for row, messages in wrong.items():
-            records["mistakes"][row] = len(messages)
-        return records, wrong
-
-    def _groups(
-        self, numbers: Sequence[int] | IntArray, records: Records, wrong: dict[int, list[str]]
-    ) -> Iterator[_Group]:
-        """Yield paths that can be computed side by side; note in `wrong` what is wrong with the others."""
-        points = self.study.points
+        points, grounds = self.study.points, defaultdict[str, list[tuple[int, Case]]](list)
         displaced = points.displacements(numbers)
-        grounds: dict[str, list[tuple[int, Case, Base]]] = defaultdict(list)
         for row, values in enumerate(points.values(numbers)):
             try:
-                case, base = self.variants.at(values)
+                case = case_at(self.study, values)
             except InputError as error:
                 wrong[row] = mistakes_of(error)
             except ArithmeticError as error:
                 wrong[row] = [f"its case cannot be made: {error}"]
             else:
-                grounds[base.ground].append((row, case, base))
-        for several in grounds.values():
-            groups: dict[RunCase, list[_Path]] = defaultdict(list)
-            surface = self._surface(several[0][2])
-            starts = np.array([case.part.position for _, case, _ in several]) + displaced[[row for row, *_ in several]]
-            faults = start_faults(several[0][2].case, starts)
-            for (row, case, _), place, messages in zip(several, starts.tolist(), faults, strict=True):
-                records["start_x"][row], records["start_y"][row] = place
-                law = contact_of(case.friction)
-                if faults_here := [*messages, *case_faults(case), *([surface] if isinstance(surface, str) else [])]:
-                    wrong[row] = faults_here
-                elif not isinstance(law, str):
-                    part = build_part(case, (place[0], place[1]))
-                    groups[case.run].append(_Path(row, case, part, law))
-            if not isinstance(surface, str):
-                yield from ((paths, surface, run) for run, paths in groups.items())
+                grounds[ground_key(case)].append((row, case))
+        with one_blas_thread():
+            for ground, pairs in grounds.items():
+                rows, tasks = self._tasks(ground, pairs, displaced[[row for row, _ in pairs]], records, wrong)
+                for number, path in follow_each(tasks, self._threads):
+                    if isinstance(path, Exception):
+                        wrong[rows[number]] = [f"its path cannot be found: {path}"]
+                        continue
+                    put(records, rows[number], tasks[number].part.position, path)
+                    if visit is not None:
+                        visit(rows[number], path)
+        for row, messages in wrong.items():
+            records["mistakes"][row] = len(messages)
+        return records, wrong
 
-    def _follow(
+    def _tasks(
         self,
+        ground: str,
+        pairs: Sequence[tuple[int, Case]],
+        displaced: FloatArray,
         records: Records,
         wrong: dict[int, list[str]],
-        paths: Sequence[_Path],
-        surface: SurfaceMotion,
-        run: RunCase,
-        visit: Visit | None,
-    ) -> None:
-        try:
-            trajectories = simulate_many(
-                surface,
-                [path.part for path in paths],
-                [path.friction for path in paths],
-                run.duration,
-                run.gravity,
-                run.tolerance,
-                run.after_detachment,
-                [build_drives(path.case) for path in paths] if self.variants.drives_vary else None,
-                self._threads,
-            )
-        except FAILURES as error:
-            if len(paths) == 1:
-                wrong[paths[0].row] = [f"its path cannot be found: {error}"]
-            else:
-                for path in paths:
-                    self._follow(records, wrong, [path], surface, run, visit)
-        else:
-            for path, trajectory in zip(paths, trajectories, strict=True):
-                put(records, path.row, path.part.position, trajectory)
-                if visit is not None:
-                    visit(path.row, trajectory)
+    ) -> tuple[list[int], list[PathTask]]:
+        """The rows and paths of cases over the same ground; notes their starts, and in `wrong` why one is refused."""
+        first, vary = pairs[0][1], drives_vary(self.study.points.axes)
+        surface = self._surface(ground, first)
+        starts = np.array([case.part.position for _, case in pairs]) + displaced
+        rows, tasks = [], []
+        for (row, case), place, messages in zip(pairs, starts.tolist(), start_faults(first, starts), strict=True):
+            records["start_x"][row], records["start_y"][row] = place
+            law = contact_of(case.friction)
+            if faults := [*messages, *case_faults(case), *([surface] if isinstance(surface, str) else [])]:
+                wrong[row] = faults
+            elif not isinstance(law, str) and not isinstance(surface, str):
+                part, drives = build_part(case, (place[0], place[1])), build_drives(case) if vary else None
+                rows.append(row)
+                tasks.append(PathTask(surface, part, law, case.run, drives))
+        return rows, tasks
 
-    def _surface(self, base: Base) -> SurfaceMotion | str:
+    def _surface(self, ground: str, case: Case) -> SurfaceMotion | str:
         """The moving surface, or why there is none.
 
         It is made on this thread, which also drops those no longer kept: elsewhere their memory would leak.
         """
-        if base.ground not in self._surfaces:
-            if len(self._surfaces) == self._kept:
-                del self._surfaces[next(iter(self._surfaces))]
+        if ground not in self._failed:
             try:
-                self._surfaces[base.ground] = shared_surface(
-                    base.case, drive_sets(self.study, self.variants, base), self._duration
-                )
+                return self._plates.surface(case, partial(drive_sets, self.study, case), self._duration)
             except FAILURES as error:
-                self._surfaces[base.ground] = f"what the part moves over cannot be made: {error}"
-        return self._surfaces[base.ground]
+                self._failed[ground] = f"what the part moves over cannot be made: {error}"
+        return self._failed[ground]

@@ -10,11 +10,11 @@ import numpy as np
 
 from active_surface.arrays import IntArray
 from active_surface.studies.axis import Axis
-from active_surface.studies.heights import heights_key
 from active_surface.studies.points import DRAWN, contents_of, digests, earlier
 from active_surface.studies.record import Records
 from active_surface.studies.stored import Coordinates, differences, key_of, stored_coordinates, stored_records
 from active_surface.studies.study import Study
+from active_surface.studies.variants import heights_key
 from coupling.case import find_field, lattice_of
 
 MAY_DIFFER: Final = ["points"]

@@ -8,7 +8,7 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.study import Study
-from active_surface.studies.variants import Variants
+from active_surface.studies.variants import case_at
 from coupling import friction_law
 from coupling.case import (
     Case,
@@ -26,11 +26,10 @@ LAWS = 256  # kept
 
 def all_refused(study: Study) -> str:
     """What is wrong where every point of a study that is tried is refused; "" where one is not."""
-    variants = Variants(study.case, study.points.axes)
     places = np.unique(np.linspace(0, len(study.points) - 1, TRIED).astype(np.int64)).tolist()
     first = ""
     for k in places:
-        messages = refusals(study, variants, k)
+        messages = refusals(study, k)
         if not messages:
             return ""
         first = first or "; ".join(messages)
@@ -38,15 +37,15 @@ def all_refused(study: Study) -> str:
     return f"lead to a case that cannot be run at {tried}: {first}"
 
 
-def refusals(study: Study, variants: Variants, k: int) -> list[str]:
+def refusals(study: Study, k: int) -> list[str]:
     """What is wrong with path k of a study; nothing: it can be run."""
     (values,) = study.points.values([k])
     try:
-        case, base = variants.at(values)
+        case = case_at(study, values)
     except InputError as error:
         return mistakes_of(error)
     start = study.points.displacements([k])[0] + case.part.position
-    return start_faults(base.case, start[None])[0] + case_faults(case)
+    return start_faults(case, start[None])[0] + case_faults(case)
 
 
 def case_faults(case: Case) -> list[str]:

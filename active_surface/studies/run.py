@@ -168,9 +168,10 @@ def _results_file(
         else:
             found = _kept(study, file, overwrite)
             kept = len(found.numbers)
-            _compute(Engine(study, threads), found, store, tell, scheduler)
+            engine = Engine(study, threads)
+            _compute(engine, found, store, tell, scheduler)
             pieces = chain(found.records(file), store.load())
-            write_dataset(study, _in_order(len(study.points), pieces, store), file, model_warnings(study))
+            write_dataset(study, _in_order(len(study.points), pieces, store), file, model_warnings(engine))
         store.clear()
     return file, kept
 

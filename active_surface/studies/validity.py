@@ -8,15 +8,25 @@ from itertools import product
 from typing import Any, Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
-from active_surface.studies.engine import FAILURES
+from active_surface.studies.engine import Engine
 from active_surface.studies.points import Points
 from active_surface.studies.refusal import refusals
 from active_surface.studies.study import Study
-from active_surface.studies.variants import Variants
-from coupling import PlateSummary, SolvedPlates, quick_summary, report
+from active_surface.studies.variants import case_at
+from coupling import (
+    FAILURES,
+    PlateSummary,
+    build_friction,
+    follow_part,
+    one_blas_thread,
+    plate_figures,
+    quick_summary,
+    report,
+)
 from coupling.case import Case, PlatformCase
+from coupling.scene import PlateScene
+from particle import interruptible
 
 CHECKED: Final = 4  # corners, besides the base case
 SEARCHED: Final = 4096  # points searched for corners, unless they form a grid
@@ -37,41 +47,53 @@ FIGURES: Final = (
 )
 
 
-def model_warnings(study: Study) -> tuple[str, ...]:
+def model_warnings(engine: Engine) -> tuple[str, ...]:
     """The warnings of a run, each with the worst figure of the base case and a few corners of the study's axes.
 
-    Points that a sweep refuses are left out, and so are warnings about a run's files and the digits of its path. One
-    that cannot be checked is a warning of its own. A rigid platform has no warnings.
+    They are those of the surfaces that an engine's paths share. Points that a sweep refuses are left out, and so are
+    warnings about a run's files and the digits of its path. One that cannot be checked is a warning of its own. A rigid
+    platform has no warnings.
     """
-    if isinstance(study.case.plate, PlatformCase):
+    if isinstance(engine.study.case.plate, PlatformCase):
         return ()
-    summaries, plates, unchecked = [], SolvedPlates(keep=1), dict[str, None]()
-    # Many small systems: BLAS threads would only wait for each other.
-    with threadpool_limits(limits=1, user_api="blas"):
-        for case in _cases(study):
+    first: PlateSummary | None = None
+    figures, unchecked = list[dict[str, Any]](), dict[str, None]()
+    with one_blas_thread():
+        for case in _cases(engine.study):
             try:
-                summary = quick_summary(case, plates.scene(case))
+                found = _figures(engine, case) if first else quick_summary(case, engine.scene(case))
             except FAILURES as error:
                 unchecked[f"The model could not be checked at a corner of the axes: {error}."] = None
                 continue
-            if isinstance(summary, PlateSummary):
-                summaries.append(summary)
-    if not summaries:
+            if isinstance(found, PlateSummary):
+                first, found = found, vars(found)
+            if isinstance(found, dict):
+                figures.append(found)
+    if first is None:
         return tuple(unchecked)
-    known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}
+    known = {name: [one[name] for one in figures if one[name] is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
-    stretched = [one.stretch_error for one in summaries if one.stretch_error]
+    stretched = [one["stretch_error"] for one in figures if one["stretch_error"]]
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
-    return (*report.warnings(replace(summaries[0], frames_per_cycle=None, **worst)), *unchecked)
+    return (*report.warnings(replace(first, frames_per_cycle=None, **worst)), *unchecked)
+
+
+def _figures(engine: Engine, case: Case) -> dict[str, Any] | None:
+    """What the model's validity is judged by; None: there is no plate."""
+    scene, friction = engine.scene(case), build_friction(case)
+    if not isinstance(scene, PlateScene):
+        return None
+    path = interruptible(follow_part, case, scene.surface, friction)
+    return vars(plate_figures(case, scene, path, friction)) | {"energy_balance": path.energy.balance}
 
 
 def _cases(study: Study) -> Iterator[Case]:
     yield study.case
-    variants, points = Variants(study.case, study.points.axes), study.points
+    points = study.points
     for point in corners(points):
         path = point * points.repeats
-        if not refusals(study, variants, path):
-            yield variants.at(points.values([path])[0])[0]
+        if not refusals(study, path):
+            yield case_at(study, points.values([path])[0])
 
 
 def corners(points: Points) -> list[int]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from coupling import (
+    PathTask,
     Progress,
     StretchedSurface,
     VibratingSurface,
@@ -19,12 +20,13 @@ from coupling import (
     build_friction,
     build_part,
     build_scene,
+    follow,
     shared_surface,
     silent,
 )
 from coupling.case import Case, PlateCase, scaled_case
 from meshes import Outline
-from particle import PartAtRest, SurfaceMotion, Trajectory, part_at_rest, simulate_many
+from particle import PartAtRest, SurfaceMotion, Trajectory, part_at_rest
 from particle.drives import drive_table, horizon
 from particle.friction import Contact
 
@@ -86,16 +88,12 @@ class Ground:
         self, factors: Sequence[tuple[float, float]], threads: int | None = None, friction: Contact | None = None
     ) -> list[Trajectory]:
         """The part's paths at factors (frequency, stroke), or under another friction; each ends where it comes off."""
-        case, run = self.case, self.case.run
-        surface = self.surface
+        surface, law, part = self.surface, friction or self.friction, build_part(self.case)
         if isinstance(surface, (VibratingSurface, StretchedSurface)):
             surface = surface.until(self.duration)
-        drives = [build_drives(scaled_case(case, *pair)) for pair in factors]
-        part = build_part(case)
-        return simulate_many(
-            surface, [part] * len(drives), friction or self.friction, self.duration, run.gravity, run.tolerance, "stop",
-            drives, threads,
-        )  # fmt: skip
+        run = self.case.run.model_copy(update={"duration": self.duration, "after_detachment": "stop"})
+        drives = [build_drives(scaled_case(self.case, *pair)) for pair in factors]
+        return follow([PathTask(surface, part, law, run, own) for own in drives], threads)
 
 
 def make_ground(

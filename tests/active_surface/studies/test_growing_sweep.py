@@ -12,10 +12,11 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.cli.program import main
-from active_surface.studies import engine, read_study, run_study
+from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
 from active_surface.studies.growth import kept_paths
-from active_surface.studies.heights import heights_key
+from active_surface.studies.variants import heights_key
+from coupling import batch
 
 MASS = '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg"]\n'
 LIMIT = '[[axes]]\nfield = "friction.limit"\nvalues = ["10 nN", "20 nN", "15 nN"]\n'
@@ -100,14 +101,14 @@ def test_what_paths_follow_from_is_compared(change, tmp_path):
 
 
 def test_refused_points_and_texts_are_kept_too(tmp_path, monkeypatch):
-    follow = engine.simulate_many
+    follow = batch.simulate_many
 
     def failing(surface, parts, *rest):
         if any(part.mass == 2e-9 for part in parts):
             raise ValueError("it went wrong")
         return follow(surface, parts, *rest)
 
-    monkeypatch.setattr(engine, "simulate_many", failing)
+    monkeypatch.setattr(batch, "simulate_many", failing)
     cycles = '[[axes]]\nfield = "plate.motion.x.cycle"\nvalues = ["up-down", "sine"]\n'
     (sweep, _), (content, expected) = grown(tmp_path, MASS, cycles + MASS)
     assert content == expected and sweep.kept == 2

@@ -9,9 +9,9 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, SHAKEN, same, written
 
 from active_surface.cli.program import main
-from active_surface.studies import engine, lines, read_study, run_study, validity
+from active_surface.studies import Engine, lines, read_study, run_study
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
-from coupling import quick_summary, read_case
+from coupling import batch, read_case
 from coupling.case import CaseError
 from coupling.run import build_friction, build_surface, follow_part
 
@@ -98,14 +98,14 @@ def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path, axes, case):
 
 def test_few_trajectories_are_held_at_a_time_and_the_bits_do_not_depend_on_it(tmp_path, monkeypatch):
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
-    whole, counts, many = run_study(study).dataset, [], engine.simulate_many
+    whole, counts, many = run_study(study).dataset, [], batch.simulate_many
 
     def counted(surface, parts, *rest):
         counts.append(len(parts))
         return many(surface, parts, *rest)
 
-    monkeypatch.setattr(engine, "simulate_many", counted)
-    monkeypatch.setattr(engine, "HELD", 1)
+    monkeypatch.setattr(batch, "simulate_many", counted)
+    monkeypatch.setattr(batch, "AT_ONCE", 1)
     assert same(whole, run_study(study).dataset) and counts == [1] * 6
 
 
@@ -134,11 +134,12 @@ def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
 def test_a_point_with_cycles_without_end_is_refused(tmp_path, case, monkeypatch):
     checked: list[float] = []
 
-    def summary(case, scene):
+    def noted(engine, case):
         checked.append(case.actuators[0].frequency)
-        return quick_summary(case, scene)
+        return scene(engine, case)
 
-    monkeypatch.setattr(validity, "quick_summary", summary)
+    scene = Engine.scene
+    monkeypatch.setattr(Engine, "scene", noted)
     field = "plate.motion.x.frequency" if case is PLATFORM else "actuators.0.frequency"
     axes = f'[[axes]]\nfield = "{field}"\nvalues = ["400 Hz", "1e12 Hz"]\n'
     sweep = run_study(read_study(written(tmp_path, axes, case)))

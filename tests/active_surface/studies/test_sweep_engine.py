@@ -12,10 +12,11 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.cli.program import main
-from active_surface.studies import engine, read_study, run_study, validity
+from active_surface.studies import read_study, run_study, validity
 from active_surface.studies.engine import Engine
 from active_surface.studies.validity import corners
-from coupling import report
+from active_surface.studies.variants import case_at
+from coupling import batch, report, solved_plates
 
 
 @pytest.mark.parametrize("failure", [ValueError, ZeroDivisionError, RuntimeError])
@@ -23,14 +24,14 @@ def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, fail
     study = read_study(
         written(tmp_path, '[[axes]]\nfield = "part.mass"\nrange = ["1e-9 kg", "9e-9 kg"]\ncount = 9\n', PLATFORM)
     )
-    whole, many = run_study(study).dataset, engine.simulate_many
+    whole, many = run_study(study).dataset, batch.simulate_many
 
     def failing(surface, parts, *rest):
         if any(abs(part.mass - 4e-9) < 1e-12 for part in parts):
             raise failure("it went wrong")
         return many(surface, parts, *rest)
 
-    monkeypatch.setattr(engine, "simulate_many", failing)
+    monkeypatch.setattr(batch, "simulate_many", failing)
     sweep = run_study(study)
     assert sweep.dataset["mistakes"].values.tolist() == [0, 0, 0, 1, 0, 0, 0, 0, 0]
     assert sweep.first_refused == ["its path cannot be found: it went wrong"]
@@ -41,14 +42,14 @@ def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, fail
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_a_plate_that_cannot_be_solved_is_refused_with_the_reason(tmp_path, monkeypatch):
-    solved = engine.shared_surface
+    solved = solved_plates.build_scene
 
     def failing(case, *rest):
         if case.plate.thickness < 1e-6:
             raise ZeroDivisionError("float division by zero")
         return solved(case, *rest)
 
-    monkeypatch.setattr(engine, "shared_surface", failing)
+    monkeypatch.setattr(solved_plates, "build_scene", failing)
     axes = '[[axes]]\nfield = "plate.thickness"\nvalues = [{}]\n'
     sweep = run_study(read_study(written(tmp_path, axes.format('"1e-9 m", "5 um"'))))
     assert sweep.dataset["mistakes"].values.tolist() == [1, 0]
@@ -85,8 +86,8 @@ def test_memory_does_not_grow_with_plates(tmp_path):
 
 def test_plates_that_come_again_are_solved_once(tmp_path, monkeypatch):
     axes = '[[axes]]\nfield = "plate.motion.x.stroke"\nvalues = ["5 um", "6 um", "7 um", "8 um", "9 um", "10 um"]\n'
-    made, build = [], engine.shared_surface
-    monkeypatch.setattr(engine, "shared_surface", lambda *of: made.append(of) or build(*of))
+    made, build = [], solved_plates.build_scene
+    monkeypatch.setattr(solved_plates, "build_scene", lambda *of: made.append(of) or build(*of))
     one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\nseed = 1\n{axes}', PLATFORM)))
     for k in range(40):
         one.records([k])
@@ -94,7 +95,7 @@ def test_plates_that_come_again_are_solved_once(tmp_path, monkeypatch):
     drawn = axes.replace("values", "range").replace(', "6 um", "7 um", "8 um", "9 um"', "")
     one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\n{drawn}', PLATFORM)))
     one.records(range(40))
-    assert len(one._surfaces) == 1
+    assert len(one._plates._scenes) == 1
 
 
 @pytest.mark.parametrize(
@@ -119,9 +120,7 @@ def test_ten_thousand_actuators_are_varied_at_once(tmp_path):
     study = read_study(
         written(tmp_path, '[[axes]]\nfield = "actuators.*.stroke"\nrange = ["1 um", "2 um"]\ncount = 9\n', case)
     )
-    variants = Engine(study).variants
-    variants.at((1e-6,))
-    cases = [variants.at((stroke * 1e-6,))[0] for stroke in (1.1, 1.2, 1.3)]
+    cases = [case_at(study, (stroke * 1e-6,)) for stroke in (1.1, 1.2, 1.3)]
     assert [{actuator.stroke for actuator in made.actuators} for made in cases] == [{1.1e-6}, {1.2e-6}, {1.3e-6}]
     assert len({actuator.position for actuator in cases[0].actuators}) == len(cases[0].actuators) == 10_001
     assert cases[0].actuators[7].position == study.case.actuators[7].position
@@ -146,14 +145,16 @@ def test_the_command_warns_where_the_model_stops_holding(tmp_path):
 @pytest.mark.compiled
 @pytest.mark.parametrize("highest", [1e-6, 1.0])
 def test_a_corner_that_cannot_be_checked_is_a_warning(tmp_path, monkeypatch, ran, highest):
-    def fails(case, scene):
+    def checked(case):
         if case.actuators[0].stroke < highest:
             raise ValueError("its numbers are too far apart")
         return ran("linear").summary
 
     study = read_study(written(tmp_path, SOFT, PLATE))
-    monkeypatch.setattr(validity, "quick_summary", fails)
-    *_, warning = warnings = validity.model_warnings(study)
+    monkeypatch.setattr(Engine, "scene", lambda engine, case: None)
+    monkeypatch.setattr(validity, "quick_summary", lambda case, scene: checked(case))
+    monkeypatch.setattr(validity, "_figures", lambda engine, case: vars(checked(case)))
+    *_, warning = warnings = validity.model_warnings(Engine(study))
     assert len(warnings) == (1 if highest == 1.0 else 1 + len(report.warnings(ran("linear").summary)))
     assert warning == "The model could not be checked at a corner of the axes: its numbers are too far apart."
 

@@ -5,8 +5,6 @@ import math
 import pytest
 from sweeps import PLATE
 
-from active_surface.studies.axis import Axis
-from active_surface.studies.variants import Variants
 from coupling import read_case
 from coupling.case import find_field
 
@@ -33,7 +31,7 @@ def test_phase_and_ramp_can_be_varied(case, path, value, unit, read):
     field = find_field(case, None, path)
     assert (field.unit, field.kind, field.read(value)) == (unit, "number", pytest.approx(read))
     (key,) = {location[-1] for location in field.locations}
-    varied, _ = Variants(case, (Axis(path, field, (field.read(value),)),)).at((field.read(value),))
+    varied = case.vary({path: field.read(value)})
     for k, actuator in enumerate(varied.actuators):
         expected = read if ("actuators", k, key) in field.locations else getattr(case.actuators[k], key)
         assert getattr(actuator, key) == pytest.approx(expected)
