@@ -4,9 +4,21 @@ import numpy as np
 import pytest
 from sweeps import DISC
 
-from coupling import Case, InputError, run_case, run_cases
+from coupling import (
+    Case,
+    InputError,
+    PathTask,
+    batch,
+    build_friction,
+    build_surface,
+    follow,
+    follow_each,
+    follow_part,
+    run_case,
+    run_cases,
+)
 from fem_plate import Plate
-from particle import Samples
+from particle import Micropart, Samples
 
 ACTUATORS = [
     {"position": ("-75 um", "0 um"), "stroke": "60 um", "frequency": "400 Hz"},
@@ -120,6 +132,45 @@ def test_platforms_come_in_batches_too():
         run_case(base, shapes=object())
     with pytest.raises(ValueError, match="^Input threads of run_cases must be at least 1; got 0"):
         run_cases([base], threads=0)
+
+
+@pytest.mark.parametrize(
+    ("run", "given", "message"),
+    [
+        (run_case, "a.toml", "Input case of run_case must be a Case, as read_case reads it from a file; got 'a.toml'"),
+        (run_cases, "a.toml", "Input cases of run_cases must be a list of cases; got 'a.toml'"),
+        (run_cases, case(), "Input cases of run_cases must be a list of cases; got Case 'case'"),
+        (run_cases, [case(), None], r"Input cases\[1\] of run_cases must be a Case, .* got None"),
+    ],
+)
+def test_what_is_no_case_is_refused(run, given, message):
+    with pytest.raises(ValueError, match=f"^{message}"):
+        run(given)
+
+
+def test_paths_that_fail_together_are_followed_one_by_one(monkeypatch):
+    shaken = {"shape": "platform", "motion": {"x": {"stroke": "20 um", "frequency": "200 Hz"}}}
+    base = case(plate=shaken, actuators=[], part={"mass": 2e-9, "position": (0, 0)})
+    surface, law = build_surface(base), build_friction(base)
+    many, counts, short = batch.simulate_many, [], base.run.model_copy(update={"duration": 1e-3})
+
+    def failing(surface, parts, *rest):
+        counts.append(len(parts))
+        if any(part.mass == 3e-9 for part in parts):
+            raise RuntimeError("it went wrong")
+        return many(surface, parts, *rest)
+
+    monkeypatch.setattr(batch, "simulate_many", failing)
+    masses, runs = (1e-9, 3e-9, 4e-9, 5e-9), (base.run, base.run, short, base.run)
+    tasks = [PathTask(surface, Micropart(m, (0.0, 0.0)), law, run) for m, run in zip(masses, runs, strict=True)]
+    found = dict(follow_each(tasks, threads=1))
+    assert counts == [3, 1, 1, 1, 1] and sorted(found) == [0, 1, 2, 3] and str(found[1]) == "it went wrong"
+    for number in (0, 2, 3):
+        single = base.vary({"part.mass": masses[number], "run.duration": runs[number].duration})
+        alone = follow_part(single, surface, law)
+        assert np.array_equal(found[number].position, alone.position)
+    with pytest.raises(RuntimeError, match="it went wrong"):
+        follow(tasks)
 
 
 def test_a_case_that_cannot_be_run_is_named_by_its_number(monkeypatch):

@@ -1,8 +1,10 @@
 """Files that are written as a whole or not at all."""
 
+from pathlib import Path
+
 import pytest
 
-from coupling.files import whole_file
+from coupling.files import check_folder, whole_file
 
 
 def test_a_file_is_there_only_when_it_is_whole(tmp_path):
@@ -20,3 +22,17 @@ def test_what_fails_leaves_the_older_file(tmp_path):
         partial.write_text("half")
         raise KeyboardInterrupt
     assert [file.name for file in tmp_path.iterdir()] == ["one.txt"] and path.read_text() == "older"
+
+
+def test_a_folder_is_checked_by_writing_to_it(tmp_path):
+    check_folder(tmp_path / "new" / "newer")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ValueError, match=r"must be a folder; got .*file.new, but .*file is a file"):
+        check_folder(tmp_path / "file" / "new")
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder that refuses every user")
+def test_a_folder_that_only_seems_writable_is_refused():
+    with pytest.raises(ValueError, match="that can be written to; got /proc/new, but /proc refuses it"):
+        check_folder(Path("/proc/new"))

@@ -135,15 +135,13 @@ def app(
     except ImportError:
         raise ValueError('the page needs the package tornado: pip install "active-surface[app]"') from None
     assert tornado
-    from threadpoolctl import threadpool_limits
-
     from active_surface.app import Server, open_case
+    from coupling import one_blas_thread
 
     server = Server(None if case is None else partial(open_case, case), port)
     click.echo(f"{'page':<12}{server.address}")
     click.echo(f"{'ends':<12}with its last tab, or Ctrl-C")
-    # Many small systems: BLAS threads would only wait for each other.
-    with threadpool_limits(limits=1, user_api="blas"), TemporaryDirectory(prefix="active-surface-") as folder:
+    with one_blas_thread(), TemporaryDirectory(prefix="active-surface-") as folder:
         server.run(lambda: None if no_browser else _open(server.address, Path(folder, "open.html")))
 
 

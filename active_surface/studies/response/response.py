@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.frequency_range import range_fault
 from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response
 from common import draw, quantity_text, range_text
-from coupling import Progress, silent, whole_file
+from coupling import Progress, one_blas_thread, silent, whole_file
 from coupling.case import SAME_PLACE, Case, PlateCase
 from coupling.scene import actuator_stiffness, build_plate, damping_of
 from fem_plate import MAX_MODES, Excitation, InfluenceShapes
@@ -165,7 +164,7 @@ def response(
     xy = np.atleast_2d(np.asarray([case.part.position] if points is None else points, dtype=float))
     if xy.ndim != 2 or xy.shape[1] != 2:
         raise ValueError(f"Input points of response must have shape (k, 2); got {xy.shape}")
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         return interruptible(_found, case, plate_case, xy, given, lowest, highest, progress)
 
 
