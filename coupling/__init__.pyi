@@ -48,8 +48,7 @@ from .run import (
     stage_count as stage_count,
 )
 from .shared import (
-    StretchedSurface as StretchedSurface,
-    VibratingSurface as VibratingSurface,
+    AnsweringSurface as AnsweringSurface,
     answers_drives as answers_drives,
     shared_surface as shared_surface,
 )

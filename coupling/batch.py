@@ -73,7 +73,7 @@ def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory
     if run.scheme != "events":
         pool = ThreadPoolExecutor(threads or processors())
         try:
-            return interruptible(lambda: list(pool.map(_by_steps, tasks)))
+            return interruptible(lambda: list(pool.map(lambda task: simulate_run(*task), tasks)))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
     return simulate_many(
@@ -87,11 +87,6 @@ def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory
         [task.drives for task in tasks if task.drives is not None] or None,
         threads,
     )
-
-
-def _by_steps(task: PathTask) -> Trajectory:
-    surface = task.surface if task.drives is None else task.surface.driven_by(task.drives)
-    return simulate_run(surface, task.part, task.friction, task.run)
 
 
 class _Job(NamedTuple):

@@ -7,6 +7,7 @@ case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -26,7 +27,7 @@ from coupling.results import CaseRecord, Output, SavedRun, record_of, write_resu
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from fem_plate import PlateShapes
-from particle import Micropart, SurfaceMotion, Trajectory, interruptible
+from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 
@@ -184,19 +185,18 @@ def tighter_run(run: RunCase, surface: SurfaceMotion) -> RunCase:
     return run.model_copy(update={"time_step": step / 2})
 
 
-def simulate_run(surface: SurfaceMotion, part: Micropart, friction: Contact, run: RunCase) -> Trajectory:
-    """The path of a part by the settings of a run; raises as `simulate` does."""
+def simulate_run(
+    surface: SurfaceMotion,
+    part: Micropart,
+    friction: Contact,
+    run: RunCase,
+    drives: Sequence[AnyDrive] | None = None,
+) -> Trajectory:
+    """The path of a part by the settings of a run, under a surface's own drives or others; raises as `simulate`."""
+    driven, settings = surface if drives is None else surface.driven_by(drives), (run.scheme, run.after_detachment)
     try:
         return particle.simulate(
-            surface,
-            part,
-            friction,
-            run.duration,
-            run.gravity,
-            run.tolerance,
-            run.scheme,
-            run.after_detachment,
-            None if run.scheme == "events" else run.time_step,
+            driven, part, friction, run.duration, run.gravity, run.tolerance, *settings, run.time_step
         )
     except MemoryError:
         text = "run.duration must be shorter, as the steps of the path take more memory than there is"

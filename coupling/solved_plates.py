@@ -12,7 +12,7 @@ from coupling.drives import build_drives
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import PlateScene, Scene, actuator_stiffness, lifts_of
-from coupling.shared import StretchedSurface, VibratingSurface, answers_drives, plate_shapes, shared_surface
+from coupling.shared import AnsweringSurface, answers_drives, plate_shapes, shared_surface
 from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion
 
@@ -79,7 +79,7 @@ class SolvedPlates:
         if not answers_drives(case):
             return self.scene(case)
         surface = self.surface(case, sets, end)
-        assert isinstance(surface, (StretchedSurface, VibratingSurface))
+        assert isinstance(surface, AnsweringSurface)
         return surface.scene(build_drives(case), self._shapes_of(case, self._progress))
 
     def known_surface(self, case: Case, end: float) -> SurfaceMotion | None:

@@ -11,10 +11,9 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from coupling import (
+    AnsweringSurface,
     PathTask,
     Progress,
-    StretchedSurface,
-    VibratingSurface,
     answers_drives,
     build_drives,
     build_friction,
@@ -66,7 +65,7 @@ class Ground:
     def driven(self, frequency: float, stroke: float, end: float | None = None) -> SurfaceMotion:
         """The surface at these factors, good up to an end [s], by default that of the run."""
         surface, end = self.surface, self.duration if end is None else end
-        if isinstance(surface, (VibratingSurface, StretchedSurface)):
+        if isinstance(surface, AnsweringSurface):
             surface = surface.until(end)
         return surface.driven_by(build_drives(scaled_case(self.case, frequency, stroke)))
 
@@ -89,7 +88,7 @@ class Ground:
     ) -> list[Trajectory]:
         """The part's paths at factors (frequency, stroke), or under another friction; each ends where it comes off."""
         surface, law, part = self.surface, friction or self.friction, build_part(self.case)
-        if isinstance(surface, (VibratingSurface, StretchedSurface)):
+        if isinstance(surface, AnsweringSurface):
             surface = surface.until(self.duration)
         run = self.case.run.model_copy(update={"duration": self.duration, "after_detachment": "stop"})
         drives = [build_drives(scaled_case(self.case, *pair)) for pair in factors]
@@ -116,6 +115,6 @@ def make_ground(
     pairs = [(k, s) for s in (strokes[1], 1.0) for k in np.geomspace(*frequencies, SETS).tolist()]
     sets = [build_drives(case)] + [build_drives(scaled_case(case, *pair)) for pair in pairs]
     surface = shared_surface(case, sets, end, progress)
-    assert isinstance(surface, (VibratingSurface, StretchedSurface)) and surface.model is not None
+    assert isinstance(surface, AnsweringSurface)
     shapes = surface.model.shapes
     return Ground(case, surface, shapes.outline, shapes.points, duration)
