@@ -89,14 +89,6 @@ def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory
     )
 
 
-class _Job(NamedTuple):
-    """A case that is run."""
-
-    case: Case
-    scene: Scene
-    friction: Contact
-
-
 def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progress = silent) -> list[Result]:
     """Run many cases, as `run_case` does with the same bits, and write nothing.
 
@@ -133,30 +125,27 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
         check_case(case, f"cases[{number}] of run_cases")
     plates = SolvedPlates(progress)
     with one_blas_thread():
-        jobs = [_job(number, case, plates) for number, case in enumerate(cases)]
-        tasks = [_task(job, tighter, plates) for job in jobs for tighter in (False, True)]
+        scenes, tasks = [], []
+        for number, case in enumerate(cases):
+            try:
+                scenes.append(plates.scene(case))
+                tasks += _tasks(case, scenes[-1], plates)
+            except ValueError as error:
+                raise ValueError(f"Input cases[{number}] of run_cases cannot be run: {error}") from error
         with progress("Following the parts") as tell:
             paths = follow(tasks, threads, lambda done, of: tell(done // 2, of // 2))
         results = []
         with progress("Checking the model's validity") as tell:
-            for job, path, tighter in zip(jobs, paths[::2], paths[1::2], strict=True):
-                summary = summarise(job.case, job.scene, path, tighter, job.friction)
-                results.append(Result(job.case, job.scene, path, summary))
-                tell(len(results), len(jobs))
+            for case, scene, path, tighter in zip(cases, scenes, paths[::2], paths[1::2], strict=True):
+                results.append(Result(case, scene, path, summarise(case, scene, path, tighter, build_friction(case))))
+                tell(len(results), len(cases))
     return results
 
 
-def _job(number: int, case: Case, plates: SolvedPlates) -> _Job:
-    try:
-        return _Job(case, plates.scene(case), build_friction(case))
-    except ValueError as error:
-        raise ValueError(f"Input cases[{number}] of run_cases cannot be run: {error}") from error
-
-
-def _task(job: _Job, tighter: bool, plates: SolvedPlates) -> PathTask:
-    """The path of a run, or the one that it is compared with; over a surface of many cases where they share one."""
-    case, surface, drives = job.case, job.scene.surface, None
-    if case.run.scheme == "events" and isinstance(job.scene, PlateScene) and not answers_drives(case):
-        surface, drives = plates.surface(case, list, case.run.duration), job.scene.lifts
-    run = tighter_run(case.run, surface) if tighter else case.run
-    return PathTask(surface, build_part(case), job.friction, run, drives)
+def _tasks(case: Case, scene: Scene, plates: SolvedPlates) -> list[PathTask]:
+    """The path of a run and the one that it is compared with; over a surface of many cases where they share one."""
+    part, friction, run = build_part(case), build_friction(case), case.run
+    surface, drives = scene.surface, None
+    if run.scheme == "events" and isinstance(scene, PlateScene) and not answers_drives(case):
+        surface, drives = plates.surface(case, list, run.duration), scene.lifts
+    return [PathTask(surface, part, friction, one, drives) for one in (run, tighter_run(run, surface))]

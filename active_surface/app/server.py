@@ -19,7 +19,7 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from active_surface.app.lanes import Lanes
+from active_surface.app.answers import Lanes
 from active_surface.app.opened import Opened
 from active_surface.app.session import Session
 from active_surface.views import PARTS, part

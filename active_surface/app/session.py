@@ -8,11 +8,10 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from active_surface.app.answers import Answers, Refused, Send
+from active_surface.app.answers import Answers, Lanes, Refused, Send
 from active_surface.app.drawn import map_of
 from active_surface.app.full import Full
 from active_surface.app.knobs import ALL, allowed, changes_of, knobs_of
-from active_surface.app.lanes import Lanes
 from active_surface.app.opened import Opened, example_cases, open_example
 from coupling import report
 from coupling.case import Case, PlateCase

@@ -6,7 +6,7 @@ from itertools import count
 import pytest
 from app_case import CASE
 
-from active_surface.app.lanes import Lanes
+from active_surface.app.answers import Lanes
 from active_surface.app.opened import MAX_STEPS, open_case
 from active_surface.app.session import Session
 from coupling import read_case, run_case
