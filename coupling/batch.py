@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final, NamedTuple
 
@@ -119,8 +119,9 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
     """
     if threads is not None and threads < 1:
         raise ValueError(f"Input threads of run_cases must be at least 1; got {threads!r}")
-    if isinstance(cases, (Case, str)) or not isinstance(cases, Sequence):
+    if isinstance(cases, (Case, str)) or not isinstance(cases, Iterable):
         raise ValueError(f"Input cases of run_cases must be a list of cases; got {cases!r}")
+    cases = list(cases)
     for number, case in enumerate(cases):
         check_case(case, f"cases[{number}] of run_cases")
     plates = SolvedPlates(progress)
