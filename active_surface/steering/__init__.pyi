@@ -1,17 +1,15 @@
-from .aiming import aim as aim
+from .aiming import aim as aim, plan as plan
 from .following import Followed as Followed, follow_plan as follow_plan
 from .objectives import Objective as Objective, objective as objective
-from .planning import plan as plan
 from .read import read_route as read_route, read_task as read_task
 from .result import Aimed as Aimed, Planned as Planned
-from .route import Route as Route
-from .tables import Settings as Settings
-from .task import Task as Task
+from .settings import Settings as Settings
+from .task import Route as Route, Task as Task
 
 # Not public: for the packages that build on this one.
 from .aiming import aim_over as aim_over
 from .following import ATTEMPTS as ATTEMPTS, next_leg as next_leg, progress_of as progress_of
 from .read import read_measured as read_measured, read_place as read_place, read_settings as read_settings
 from . import report as report
-from .tables import AimTables as AimTables
-from .stages import prepared as prepared
+from .objectives import prepared as prepared
+from .settings import AimTables as AimTables

@@ -1,22 +1,33 @@
-"""One aim, from task to drive: this file reads as the pipeline.
+"""Aims and plans, from task or route to drives: this file reads as the pipeline.
 
-task -> surface -> approach, leg by leg: knobs, search -> case and path -> case file -> scatter and picture
+task -> surface -> approach, leg by leg: knobs, search -> case and path -> case file -> scatter and picture. A plan
+makes one approach after the other, and the schedule of all their legs.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
-from active_surface.steering.approach import Approach
-from active_surface.steering.paths import Paths
-from active_surface.steering.picture import draw_aim
-from active_surface.steering.result import Aimed
-from active_surface.steering.stages import check_free, drawn, prepared, searched, with_scatter
-from active_surface.steering.task import Task
-from coupling import ProgressCallback, no_progress
-from coupling.case import length_text
-from particle import SurfaceMotion, Trajectory
+import numpy as np
+
+from active_surface.steering.disturbances import REPORTED, deviations, draws
+from active_surface.steering.legs import Approach, Leg, end_of, scheduled
+from active_surface.steering.objectives import prepared
+from active_surface.steering.paths import Paths, path_of, settled
+from active_surface.steering.picture import draw_aim, draw_plan
+from active_surface.steering.result import Aimed, Planned, SteeringResult
+from active_surface.steering.scatter import Scatter
+from active_surface.steering.task import Route, Task
+from coupling import ProgressCallback, no_progress, run_case, warnings
+from coupling.case import length_text, write_case
+from particle import SurfaceMotion, Trajectory, interruptible, unbroken
+
+Kind = TypeVar("Kind", bound=SteeringResult)
 
 
 def aim(
@@ -55,11 +66,50 @@ def aim(
     KeyboardInterrupt
         Ctrl-C before there are any drives.
     """
-    if output is None:
-        return aim_over(prepared(task.case, task.settings), task, threads, tell)
-    file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
-    check_free((file, picture), overwrite)
-    return drawn(aim_over(prepared(task.case, task.settings), task, threads, tell, file), draw_aim, picture)
+    files = _files(task, output, "aimed", "aim", overwrite)
+    found = aim_over(prepared(task.case, task.settings), task, threads, tell, files[0] if files else None)
+    return _drawn(found, draw_aim, files[1]) if files else found
+
+
+def plan(
+    route: Route,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: ProgressCallback = no_progress,
+    overwrite: bool = False,
+) -> Planned:
+    """Find the drives that carry a part over way-points.
+
+    Upon Ctrl-C the legs so far count, if there are any.
+
+    Parameters
+    ----------
+    route : Route
+        The case and its way-points.
+    output : path, optional
+        Folder for NAME_planned.toml and NAME_plan.png.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor; the result is the same for any.
+    tell : callable
+        Called with the number of paths so far, and the largest number of paths.
+    overwrite : bool
+        Replace those files.
+
+    Returns
+    -------
+    planned : Planned
+        The schedule, and how each leg ended.
+
+    Raises
+    ------
+    ValueError
+        The case cannot be run, or those files exist and are not to be replaced.
+    KeyboardInterrupt
+        Ctrl-C before there are any legs.
+    """
+    files = _files(route, output, "planned", "plan", overwrite)
+    found = plan_over(prepared(route.case, route.settings), route, threads, tell, files[0] if files else None)
+    return _drawn(found, draw_plan, files[1]) if files else found
 
 
 def aim_over(
@@ -70,28 +120,189 @@ def aim_over(
     file: Path | None = None,
     watch: Callable[[Callable[[], Trajectory | None]], object] | None = None,
 ) -> Aimed:
-    """The same over an existing surface; writes a case file at most, before it looks at the scatter.
+    """The same as `aim` over an existing surface; writes a case file at most, before it looks at the scatter.
 
     watch: gets, after each batch of paths, what finds the path of the best drives so far.
     """
 
-    def told(done: int, of: int) -> None:
+    def count(done: int, of: int) -> None:
         tell(done, of)
         if watch is not None:
             watch(approach.look)
-
-    approach = Approach(surface, task, threads, told)
 
     def close() -> Aimed:
         way = approach.close()
         case = way.case.model_copy(update={"name": f"{task.name}_aimed"})
         return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
-    result = searched(approach.run, close, file, _comment)
-    return with_scatter(result, Paths(result.case, surface, threads), task.target, task.settings)
+    def comment(result: Aimed) -> str:
+        x, y = map(length_text, task.target)
+        return f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."
+
+    approach = Approach(surface, task, threads, count)
+    return _found(approach.run, close, comment, file, surface, threads)
 
 
-def _comment(result: Aimed) -> str:
-    """The first line of a file of the drives: how near they bring the part to the target."""
-    x, y = map(length_text, result.task.target)
-    return f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."
+def plan_over(
+    surface: SurfaceMotion,
+    route: Route,
+    threads: int | None = None,
+    tell: ProgressCallback = no_progress,
+    file: Path | None = None,
+) -> Planned:
+    """The same as `plan` over an existing surface; writes a case file at most, before it looks at the scatter."""
+    work = _Plan(surface, route, threads, tell)
+    return _found(work.run, work.close, _plan_comment, file, surface, threads)
+
+
+class _Plan:
+    """A plan, as its legs are found."""
+
+    def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: ProgressCallback) -> None:
+        self._surface, self._route, self._threads, self._tell = surface, route, threads, tell
+        self._approach: Approach | None = None  # under way
+        self._legs: tuple[Leg, ...] = ()
+        self._planned: Planned | None = None
+
+    def run(self) -> None:
+        """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
+        route, place = self._route, self._route.case.part.position
+        for number, target in enumerate(route.through):
+            done = self._planned
+            if done and math.dist(place, target) <= route.settings.tolerance:  # the part rests there already
+                self._planned = replace(done, arrivals=(*done.arrivals, done.arrivals[-1]), tried=done.tried + 1)
+                continue
+            try:
+                task = route.leg(number, place)
+            except ValueError as error:
+                assert done  # the first leg was checked with the route
+                self._planned = replace(done, failure=f"leg {number}: {error}")
+                return
+            tell = partial(_tell_leg, self._tell, number, len(route.through))
+            self._approach = Approach(self._surface, task, self._threads, tell, joined=True)
+            self._approach.run()
+            planned = self._join(self._approach)
+            if planned.failure:
+                return
+            place = end_of(planned.trajectory)
+
+    def close(self) -> Planned:
+        """What was found; KeyboardInterrupt where there is nothing."""
+        if self._approach is not None:
+            try:
+                self._join(self._approach)
+            except KeyboardInterrupt:
+                if self._planned is None:
+                    raise
+        assert self._planned is not None
+        return self._planned
+
+    def _join(self, approach: Approach) -> Planned:
+        """Take the legs of an approach into the schedule, and find out where the whole of it leads."""
+        self._approach, done = None, self._planned
+        arrivals, tried, paths = (done.arrivals, done.tried, done.paths) if done else ((), 0, 0)
+        paths += approach.paths
+        self._planned = done and replace(done, paths=paths)
+        way, now = approach.close(), arrivals[-1] if arrivals else 0.0
+        end = round(now + way.end, 9)
+        self._legs += tuple(leg._replace(start=leg.start + now) for leg in way.legs)
+        case = scheduled(self._route.case, self._legs, end)
+        case = case.model_copy(update={"name": f"{self._route.name}_planned"})
+        path = path_of(Paths(case, self._surface, self._threads), case)
+        failure = "" if settled(path) else f"leg {len(arrivals)}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
+        self._planned = Planned(
+            route=self._route,
+            case=case,
+            trajectory=path,
+            arrivals=arrivals if failure else (*arrivals, end),
+            tried=tried + 1,
+            paths=paths,
+            failure=failure,
+        )
+        return self._planned
+
+
+def _plan_comment(result: Planned) -> str:
+    """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
+    legs = zip(result.route.through, result.distances, strict=False)
+    places = [f"({length_text(x)}, {length_text(y)}) but for {length_text(off)}" for (x, y), off in legs]
+    sentences = [f"The drives carry the part over {', '.join(places)}."] if places else []
+    return "\n".join([*sentences, result.failure] if result.failure else sentences)
+
+
+def _tell_leg(tell: ProgressCallback, leg: int, legs: int, done: int, of: int) -> None:
+    tell(leg * of + done, legs * of)
+
+
+def _files(task: Task | Route, output: str | Path | None, case: str, picture: str, overwrite: bool) -> tuple[Path, ...]:
+    """The case file and the picture, none without a folder; ValueError where results would be lost or not written."""
+    if output is None:
+        return ()
+    folder = Path(output)
+    files = folder / f"{task.name}_{case}.toml", folder / f"{task.name}_{picture}.png"
+    for file in files:
+        if file.is_dir():
+            raise ValueError(f"Input output must be free for {file.name}; got {folder}, where that is a folder")
+    existing = [file.name for file in files if file.exists()]
+    if existing and not overwrite:
+        names = " and ".join(existing)
+        raise ValueError(
+            f"Input output must be free of other results; got {folder}, which has {names}: --overwrite replaces them"
+        )
+    return files
+
+
+def _found(
+    run: Callable[[], object],
+    close: Callable[[], Kind],
+    comment: Callable[[Kind], str],
+    file: Path | None,
+    surface: SurfaceMotion,
+    threads: int | None,
+) -> Kind:
+    """The result of a search, with its case file, if any, and its scatter; after Ctrl-C the best so far, without.
+
+    Raises KeyboardInterrupt where there are no drives yet.
+    """
+    result: Kind | None = None
+    interrupted = False
+    try:
+        try:
+            run()
+        except KeyboardInterrupt:
+            interrupted = True
+        with unbroken():
+            result = replace(close(), interrupted=interrupted)
+            if file is not None:
+                result = replace(result, files=(write_case(result.case, file, comment(result)),))
+        return result if interrupted else replace(result, scatter=_scatter(result, surface, threads))
+    except KeyboardInterrupt:  # the result so far stays
+        if result is None:
+            raise
+        return replace(result, interrupted=True)
+
+
+def _scatter(result: SteeringResult, surface: SurfaceMotion, threads: int | None) -> Scatter:
+    """The ends of disturbed runs of a case with the best drives, and their distances from the last target."""
+    case, settings, paths = result.case, result.settings, Paths(result.case, surface, threads)
+    ways = draws(settings.scatter, deviations(case, settings.disturbances), settings.seed, REPORTED)
+    trajectories = paths.of([(case.actuators, way) for way in ways])
+    ends = np.array([path.position[-1] for path in trajectories])
+    lost = np.array([path.time[-1] < case.run.duration for path in trajectories])
+    return Scatter(ends, np.where(lost, np.inf, np.hypot(*(ends - result.targets[-1]).T)))
+
+
+def _drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
+    """The result with its picture and the warnings of a run; without them after Ctrl-C."""
+    if result.interrupted:
+        return result
+    try:
+        cautions = tuple(warnings(interruptible(run_case, result.case).summary))
+        result = replace(result, warnings=cautions)
+        if result.scatter is not None:
+            result = replace(result, files=(*result.files, draw(result, picture)))
+    except KeyboardInterrupt:
+        return replace(result, interrupted=True)
+    except OSError as error:
+        return replace(result, warnings=(*result.warnings, f"The picture could not be written: {error}"))
+    return result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -229,12 +229,3 @@ def _is_valid(reader: TypeAdapter[Any], value: float) -> bool:
     except ValidationError:
         return False
     return True
-
-
-def flattened(tables: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:
-    """Yield each path in nested tables with its value: part.mass and "part.mass" are the same."""
-    for key, value in tables.items():
-        if isinstance(value, Mapping):
-            yield from flattened(value, f"{path}{key}.")
-        else:
-            yield f"{path}{key}", value

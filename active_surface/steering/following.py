@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from active_surface.steering.aiming import aim_over
+from active_surface.steering.objectives import prepared
 from active_surface.steering.result import Aimed
-from active_surface.steering.route import Place, Route
-from active_surface.steering.stages import prepared
-from active_surface.steering.task import Task
+from active_surface.steering.task import Place, Route, Task
 from coupling import ProgressCallback, no_progress
 from coupling.case import Case
 
@@ -111,7 +110,7 @@ def follow_plan(
     failure = ""
     while (progress := progress_of(route, measured, attempts)).way_point < len(route.through):
         try:
-            leg = leg_of(route, progress, len(measured))
+            leg = route.leg(progress.way_point, progress.place, len(measured))
         except ValueError as error:
             failure = f"leg {len(measured)}: {error}"
             break
@@ -156,20 +155,15 @@ def progress_of(route: Route, measured: Sequence[Place], attempts: int = ATTEMPT
     return progress
 
 
-def leg_of(route: Route, progress: Progress, number: int) -> Task:
-    """The task of leg `number`; ValueError where its way-point cannot be reached from where the part is."""
-    rest = {"position": progress.place, "velocity": (0.0, 0.0)} if number else {}
-    case = route.case.model_copy(update={"part": route.case.part.model_copy(update=rest), "source": None})
-    return Task(case, route.through[progress.way_point], route.settings, f"{route.name}_leg_{number}")
-
-
 def next_leg(route: Route, measured: Sequence[Place], attempts: int = ATTEMPTS) -> Task | None:
     """The task of the leg after the places [m] measured so far; None where every way-point is done.
 
     Raises ValueError where there are too many places, or the way-point cannot be reached from the last.
     """
     progress = progress_of(route, measured, attempts)
-    return leg_of(route, progress, len(measured)) if progress.way_point < len(route.through) else None
+    if progress.way_point == len(route.through):
+        return None
+    return route.leg(progress.way_point, progress.place, len(measured))
 
 
 def _place(measured: Sequence[float]) -> Place:

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.steering.tables import Settings
-from coupling.case import ActuatorCase, Case
+from active_surface.parameter import Parameter
+from active_surface.steering.settings import Settings
+from coupling.case import ActuatorCase, Case, find_field
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
@@ -19,18 +20,23 @@ AT_BOUND = 1e-3  # of a knob's range: a value so near to its bound stands at it
 DIGITS = {"frequency": 6, "stroke": 12, "delay": 12}  # decimals in SI units, as many as a file shows
 
 
-class Knob(NamedTuple):
-    """A number between two bounds; cycles are whole, and varied as numbers below `high`."""
+class Knob(Parameter):
+    """A number of an actuator's drive between two bounds; cycles are whole, and varied as numbers below `high` + 1."""
 
-    actuator: int
-    key: str
-    low: float
-    high: float
+    @property
+    def actuator(self) -> int:
+        """The number of the actuator."""
+        return int(self.field.locations[0][1])
+
+    @property
+    def key(self) -> str:
+        """The key of the number in the actuator's table."""
+        return str(self.field.locations[0][2])
 
     @property
     def smooth(self) -> bool:
         """Whether the end point changes smoothly with it."""
-        return self.key != "cycles"
+        return self.field.kind == "number"
 
 
 class Stop(NamedTuple):
@@ -62,7 +68,8 @@ class Knobs:
         for k in movers:
             bounds = _bounds(case.actuators[k], settings, case.run.duration, wide or around)
             self._fixed[k] = {key: low for key, (low, high) in bounds.items() if low == high}
-            self.knobs += [Knob(k, key, low, high) for key, (low, high) in bounds.items() if low < high]
+            free = {key: ends for key, ends in bounds.items() if ends[0] < ends[1]}
+            self.knobs += [Knob(find_field(case, None, f"actuators.{k}.{key}"), *free[key]) for key in free]
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -98,10 +105,6 @@ class Knobs:
             keys["cycles"] = int(max(1, min(keys["cycles"], fit)))
             actuators[k] = actuators[k].model_copy(update=keys)
         return tuple(actuators)
-
-    def turned(self, values: FloatArray) -> Case:
-        """The case with these values (n,) of the knobs."""
-        return self.case.model_copy(update={"actuators": self.actuators(values), "source": None})
 
     def stops(self, values: FloatArray) -> tuple[Stop, ...]:
         """Which knobs stand at a bound with these values (n,) that keeps them from moving more or otherwise."""

@@ -1,22 +1,25 @@
-"""Objective: how far from the target each of many settings of the knobs brings the part."""
+"""Objective: how far from the target each of many settings of the knobs brings the part, and the surface for all."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.disturbances import SEARCHED, Disturbance, deviations, draws
+from active_surface.steering.disturbances import SEARCHED, Disturbance, deviations, draws, stroke_room
 from active_surface.steering.knobs import Knobs
-from active_surface.steering.paths import Paths, cost
+from active_surface.steering.paths import Paths, cost, driven
 from active_surface.steering.scatter import conditional_value_at_risk
-from active_surface.steering.stages import prepared
-from active_surface.steering.task import Task
-from coupling import ProgressCallback
-from coupling.case import Case
+from active_surface.steering.settings import Settings
+from active_surface.steering.task import Task, able
+from coupling import ProgressCallback, answers_drives, build_drives, build_friction, follow_part, shared_surface
+from coupling.case import ActuatorCase, Case
+from particle import AnyDrive, SurfaceMotion, interruptible
 
-SAMPLES = 16  # disturbed runs of each trial, if a quantile or CVaR is minimised
+SAMPLES: Final = 16  # disturbed runs of each trial, if a quantile or CVaR is minimised
+SETS: Final = 64  # of drives, for which a plate that stretches is solved
 
 
 def objective(task: Task, threads: int | None = None) -> Objective:
@@ -47,6 +50,52 @@ def objective(task: Task, threads: int | None = None) -> Objective:
     return Objective(task, knobs, paths, task.settings.is_robust)
 
 
+def prepared(case: Case, settings: Settings) -> SurfaceMotion:
+    """The moving surface for a search; compiles all that paths need, so that Ctrl-C works from then on."""
+    sets: list[list[AnyDrive]] = []
+    if answers_drives(case):
+        chosen = able(case, settings)
+        sets = spread_drives(case, settings, chosen, len(chosen) if settings.actuators else settings.nearest)
+    surface = interruptible(shared_surface, case, sets, case.run.duration)
+    interruptible(follow_part, case, surface, build_friction(case))
+    return surface
+
+
+def spread_drives(case: Case, settings: Settings, fit: Sequence[int], together: int) -> list[list[AnyDrive]]:
+    """Sets of drives that stand for all that a search may try, one an actuator in each.
+
+    In each set some actuators move endlessly with any values of their knobs within the bounds, the others rest. The
+    first two sets have all strokes lowest and highest, with room for scatter; the last one has the case's own drives.
+
+    fit: numbers of the actuators that can take part.  together: how many do at most.
+    """
+    generator, ends = np.random.default_rng(settings.seed), Knobs(case, settings, tuple(fit))
+    settings_of = [ends.actuators(end) for end in np.array(ends.bounds, dtype=float).reshape(-1, 2).T]
+    for _ in range(SETS):
+        chosen = generator.choice(fit, min(together, len(fit)), replace=False)
+        knobs = Knobs(case, settings, tuple(sorted(chosen.tolist())))
+        low, high = np.array(knobs.bounds, dtype=float).reshape(-1, 2).T
+        settings_of.append(knobs.actuators(low + (high - low) * generator.random(len(low))))
+    if settings.stroke is None:  # the own drives are searched around where they end near the target
+        settings_of.append(case.actuators)
+    deviating = deviations(case, settings.disturbances)
+    longer = (
+        tuple(
+            one if one.stroke is None else _endless(one, stroke_room(deviating, k, abs(one.stroke)))
+            for k, one in enumerate(actuators)
+        )
+        for actuators in settings_of
+    )
+    return [build_drives(driven(case, actuators)) for actuators in longer]
+
+
+def _endless(actuator: ActuatorCase, factor: float) -> ActuatorCase:
+    """The same with a longer stroke that goes up and down without end."""
+    stroke = (actuator.stroke or 0.0) * factor
+    goes_on = {"cycles": None, "delay": 0.0} if stroke and actuator.cycle == "up-down" else {}
+    return actuator.model_copy(update={"stroke": stroke} | goes_on)
+
+
 class Objective:
     """The distance from a task's target as a function of its knobs: what `aim` minimises.
 
@@ -75,7 +124,7 @@ class Objective:
     @property
     def names(self) -> tuple[str, ...]:
         """The knobs as paths of fields, such as actuators.0.stroke."""
-        return tuple(f"actuators.{knob.actuator}.{knob.key}" for knob in self._knobs.knobs)
+        return tuple(knob.field.path for knob in self._knobs.knobs)
 
     @property
     def bounds(self) -> FloatArray:
@@ -88,6 +137,11 @@ class Objective:
         return self._paths.count
 
     @property
+    def tolerance(self) -> float:
+        """The distance [m] at which a search may end."""
+        return self._task.settings.tolerance
+
+    @property
     def runs(self) -> int:
         """How many paths one setting takes."""
         return len(self._ways)
@@ -95,7 +149,7 @@ class Objective:
     def case(self, values: FloatArray) -> Case:
         """The case with a setting (knobs,), as `run_case` and `write_case` take it."""
         low, high = self.bounds.T
-        return self._knobs.turned(np.clip(np.asarray(values, dtype=float), low, high))
+        return driven(self._task.case, self._knobs.actuators(np.clip(np.asarray(values, dtype=float), low, high)))
 
     def evaluate(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How far off the ends are (n, 2) [m], and the distances (n,) [m]; of disturbed runs the ends' mean counts."""
@@ -131,9 +185,9 @@ class Trials:
     `best` is the best setting of the knobs so far, `recent` the best since `forget` was called.
     """
 
-    def __init__(self, task: Task, goal: Objective, tell: ProgressCallback, max_paths: int) -> None:
+    def __init__(self, goal: Objective, tell: ProgressCallback, max_paths: int) -> None:
         """max_paths: number of paths after which the search ends."""
-        self._goal, self._tell, self._max_paths, self._tolerance = goal, tell, max_paths, task.settings.tolerance
+        self._goal, self._tell, self._max_paths = goal, tell, max_paths
         self.best = self.recent = Best()
 
     def forget(self) -> None:
@@ -143,7 +197,7 @@ class Trials:
     @property
     def reached(self) -> bool:
         """Whether the most recent best is within the tolerance."""
-        return self.recent.cost <= self._tolerance
+        return self.recent.cost <= self._goal.tolerance
 
     @property
     def exhausted(self) -> bool:

@@ -8,9 +8,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from active_surface.steering.route import Route
-from active_surface.steering.tables import AimTable, AimTables, Settings
-from active_surface.steering.task import Task, mistakes
+from active_surface.steering.settings import AimTable, AimTables, Settings
+from active_surface.steering.task import Place, Route, Task, mistakes
 from coupling.case import (
     UNITS_REQUIRED,
     Case,
@@ -24,8 +23,6 @@ from coupling.case import (
     read_columns,
     unreadable,
 )
-
-Place = tuple[float, float]
 
 LENGTH = Quantity("m", "150 um")
 MEASURED_HEADER = "x [um], y [um]"

@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from active_surface.steering.knobs import Stop
+from active_surface.steering.legs import Leg
 from active_surface.steering.paths import settled
-from active_surface.steering.route import Place, Route
 from active_surface.steering.scatter import Scatter
-from active_surface.steering.schedule import Leg
-from active_surface.steering.tables import Settings
-from active_surface.steering.task import Task
+from active_surface.steering.settings import Settings
+from active_surface.steering.task import Place, Route, Task
 from coupling.case import Case
 from particle import Trajectory
 
@@ -40,6 +39,11 @@ class SteeringResult:
         """Bounds and effort of the search."""
         raise NotImplementedError
 
+    @property
+    def targets(self) -> tuple[Place, ...]:
+        """The places to which there are drives [m], in their order."""
+        raise NotImplementedError
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Aimed(SteeringResult):
@@ -62,6 +66,11 @@ class Aimed(SteeringResult):
     def settings(self) -> Settings:
         """Bounds and effort of the search."""
         return self.task.settings
+
+    @property
+    def targets(self) -> tuple[Place, ...]:
+        """The target [m]."""
+        return (self.task.target,)
 
     @property
     def distance(self) -> float:

@@ -11,10 +11,12 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.knobs import Knobs
-from active_surface.steering.objectives import Trials
-
-Seed = tuple[int, ...]
+from active_surface.steering.knobs import Knobs, Stop
+from active_surface.steering.objectives import Objective, Trials
+from active_surface.steering.paths import Paths
+from active_surface.steering.task import Task
+from coupling import ProgressCallback
+from coupling.case import ActuatorCase
 
 ANYWHERE = 0.3  # of the knobs' ranges: the first spread of a population
 AROUND = 0.1  # likewise, around a setting
@@ -31,62 +33,101 @@ PROGRESS = 0.8  # of the previous cost; a step that leaves more ends the method
 OPTIONS = {"bounds": [0, 1], "verbose": -9, "maxiter": 10_000, "tolfun": 1e-9, "tolx": 1e-7, "tolflatfitness": 5}
 
 
-def search(knobs: Knobs, trials: Trials, newton_range: float, seed: Seed, start: FloatArray | None = None) -> None:
-    """Minimise the cost of trials until it is within the tolerance or their paths are used up.
+class Search:
+    """Finds the drives that bring a part to a task's target within its case's duration; equal seeds, equal results.
 
-    Equal seeds give equal results.
-
-    newton_range: m, the cost below which Newton's method is tried.  start: (n,) of the knobs, around which populations
-    begin; None: anywhere.
+    Populations evolve around the case's own drives, where the knobs do, or anywhere. A robust search evolves
+    undisturbed paths first, for half of the paths at most, then continues around the most robust of their best drives.
     """
-    if not knobs.knobs or start is not None:
-        trials.of((np.zeros(0) if start is None else start)[None])
-    populations = 0
-    while knobs.knobs and not (trials.reached or trials.exhausted):
-        _evolve(knobs, trials, newton_range, (*seed, populations), None if start is None else trials.best.values)
-        populations += 1
 
+    def __init__(
+        self, paths: Paths, task: Task, knobs: Knobs, tell: ProgressCallback, max_paths: int, number: int
+    ) -> None:
+        """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers."""
+        self.knobs, self.movers = knobs, task.movers
+        self._newton_range, self._seed, self._populations = NEWTON_RANGE * paths.surface.size, task.settings.seed, 0
+        self._number, self._paths = number, paths
+        self._robust: Trials | None = None
+        if task.settings.is_robust:
+            self._robust = Trials(Objective(task, knobs, paths, is_robust=True), tell, max_paths)
+            max_paths = max(max_paths // 2, 1)
+        self._nominal = Trials(Objective(task, knobs, paths), tell, max_paths)
 
-def search_robust(
-    knobs: Knobs, nominal: Trials, robust: Trials, newton_range: float, seed: Seed, start: FloatArray | None = None
-) -> None:
-    """Minimise the cost of disturbed trials, from a start (n,) of the knobs or drives that reach the target.
-
-    The nominal trials limit the number of these. Evolution continues around the most robust one.
-    """
-    if not knobs.knobs or start is not None:
-        robust.of((np.zeros(0) if start is None else start)[None])
-    populations = 0
-    while knobs.knobs and start is None and not nominal.exhausted:
-        _evolve(knobs, nominal, newton_range, (*seed, populations))
-        robust.of(nominal.recent.values[None])
-        populations += 1
-    if knobs.knobs and not robust.exhausted:
-        _evolve(knobs, robust, 0.0, (*seed, populations), robust.best.values)
-
-
-def _evolve(knobs: Knobs, trials: Trials, newton_range: float, seed: Seed, middle: FloatArray | None = None) -> None:
-    """Evolve a population, around `middle` (n,) or anywhere, until it makes no more progress."""
-    from cma import CMAEvolutionStrategy
-
-    trials.forget()
-    low, high = np.array(knobs.bounds).T
-    width, generator = high - low, np.random.default_rng(seed)
-    first = generator.random(len(low)) if middle is None else (middle - low) / width
-    options = OPTIONS | {"seed": int(generator.integers(1, 2**31))}
-    strategy = CMAEvolutionStrategy(np.clip(first, MARGIN, 1 - MARGIN), ANYWHERE if middle is None else AROUND, options)
-    tried, before, idle = np.inf, np.inf, 0
-    while not (trials.reached or trials.exhausted or idle == PATIENCE or strategy.stop()):
-        samples = strategy.ask()
-        _, costs = trials.of(low + width * np.array(samples))
-        if not np.isfinite(costs).all():
+    def run(self) -> None:
+        """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
+        nominal, robust, start = self._nominal, self._robust, self.knobs.own if self.knobs.around else None
+        counting = nominal if robust is None else robust
+        if not self.knobs.knobs or start is not None:
+            counting.of((np.zeros(0) if start is None else start)[None])
+        if not self.knobs.knobs:
             return
-        strategy.tell(samples, costs)
-        if not trials.reached and trials.recent.cost <= min(newton_range, AGAIN * tried):
-            _newton(knobs, trials)
-            tried = trials.recent.cost
-        improved = trials.recent.cost < PROGRESS * before
-        before, idle = (trials.recent.cost, 0) if improved else (before, idle + 1)
+        if robust is None:
+            while not (nominal.reached or nominal.exhausted):
+                self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
+            return
+        while start is None and not nominal.exhausted:
+            self._evolve(nominal, self._newton_range)
+            robust.of(nominal.recent.values[None])
+        if not robust.exhausted:
+            self._evolve(robust, 0.0, robust.best.values)
+
+    @property
+    def paths(self) -> int:
+        """How many have been followed."""
+        return self._paths.count
+
+    @property
+    def has_drives(self) -> bool:
+        """Whether there are drives."""
+        return bool(np.isfinite(self.cost))
+
+    @property
+    def cost(self) -> float:
+        """That of the best drives [m]."""
+        return self._trials.best.cost
+
+    @property
+    def stops(self) -> tuple[Stop, ...]:
+        """The knobs of the best drives that stand at a bound."""
+        return self.knobs.stops(self._trials.best.values)
+
+    @property
+    def actuators(self) -> tuple[ActuatorCase, ...]:
+        """All actuators with the best drives."""
+        return self.knobs.actuators(self._trials.best.values)
+
+    @property
+    def _trials(self) -> Trials:
+        if self._robust is not None and np.isfinite(self._robust.best.cost):
+            return self._robust
+        return self._nominal
+
+    def _evolve(self, trials: Trials, newton_range: float, middle: FloatArray | None = None) -> None:
+        """Evolve a population, around `middle` (n,) or anywhere, until it makes no more progress.
+
+        newton_range: m, the cost below which Newton's method is tried.
+        """
+        from cma import CMAEvolutionStrategy
+
+        trials.forget()
+        low, high = np.array(self.knobs.bounds).T
+        width, generator = high - low, np.random.default_rng((self._seed, self._number, self._populations))
+        self._populations += 1
+        first = generator.random(len(low)) if middle is None else (middle - low) / width
+        spread, options = ANYWHERE if middle is None else AROUND, OPTIONS | {"seed": int(generator.integers(1, 2**31))}
+        strategy = CMAEvolutionStrategy(np.clip(first, MARGIN, 1 - MARGIN), spread, options)
+        tried, before, idle = np.inf, np.inf, 0
+        while not (trials.reached or trials.exhausted or idle == PATIENCE or strategy.stop()):
+            samples = strategy.ask()
+            _, costs = trials.of(low + width * np.array(samples))
+            if not np.isfinite(costs).all():
+                return
+            strategy.tell(samples, costs)
+            if not trials.reached and trials.recent.cost <= min(newton_range, AGAIN * tried):
+                _newton(self.knobs, trials)
+                tried = trials.recent.cost
+            improved = trials.recent.cost < PROGRESS * before
+            before, idle = (trials.recent.cost, 0) if improved else (before, idle + 1)
 
 
 def _newton(knobs: Knobs, trials: Trials) -> None:

@@ -1,4 +1,4 @@
-"""Task: a part that is to get from where it starts to a target, and which drives may bring it there."""
+"""Tasks and routes: a part that is to get to a target, or over way-points, and which drives may bring it there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from active_surface.arrays import FloatArray
 from active_surface.steering.disturbances import deviations
 from active_surface.steering.knobs import shortest
 from active_surface.steering.reach import off_the_line
-from active_surface.steering.tables import Settings
+from active_surface.steering.settings import Settings
 from coupling.case import (
     SAME_PLACE,
     ActuatorCase,
@@ -24,6 +24,8 @@ from coupling.case import (
     must_be_inside,
 )
 
+Place = tuple[float, float]
+"""(x, y) in m."""
 Mistake = tuple[str, str]
 """A key of [aim], and what is wrong with it."""
 
@@ -39,7 +41,7 @@ class Task:
     """
 
     case: Case
-    target: tuple[float, float]  # m
+    target: Place  # m
     settings: Settings = field(default_factory=Settings)
     name: str = ""  # of the files that are written; "": that of the case
 
@@ -54,19 +56,61 @@ class Task:
         """The numbers of the actuators that take part, ascending."""
         return movers(self.case, self.settings, self.target)
 
-    def within(self, duration: float, start: tuple[float, float] | None = None) -> Task:
+    def within(self, duration: float, start: Place | None = None) -> Task:
         """The same within another duration [s], and from a place [m] where the part rests.
 
         Raises ValueError where the target cannot be reached from there.
         """
-        case = self.case
-        run = case.run.model_copy(update={"duration": duration})
-        moved = {} if start is None else {"position": start, "velocity": (0.0, 0.0)}
-        part = case.part.model_copy(update=moved)
-        return replace(self, case=case.model_copy(update={"run": run, "part": part, "source": None}))
+        run = self.case.run.model_copy(update={"duration": duration})
+        return replace(self, case=_from(self.case, start).model_copy(update={"run": run}))
 
 
-def movers(case: Case, settings: Settings, target: tuple[float, float]) -> tuple[int, ...]:
+@dataclass(frozen=True)
+class Route:
+    """A case whose part is to be carried over way-points (x, y) in m, to each within the case's duration.
+
+    Raises
+    ------
+    ValueError
+        An input makes no sense, such as a way-point off the plate or a first one that cannot be reached; has all.
+    """
+
+    case: Case
+    through: tuple[Place, ...]  # m
+    settings: Settings = field(default_factory=Settings)
+    name: str = ""  # of the files that are written; "": that of the case
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", self.name or self.case.name)
+        wrong = [] if self.through else ["through must be one way-point or more; got none"]
+        for number, place in enumerate(self.through):
+            if number == 0:
+                for key, message in mistakes(self.case, self.settings, place):
+                    wrong.append(f"{'way-point 0' if key == 'target' else key} {message}")
+            else:  # where legs after the first begin is not known yet: `leg` looks at what depends on it
+                wrong += [f"way-point {number} {message}" for message in misplaced(self.case, place)]
+        if wrong:
+            raise ValueError("\n".join(wrong))
+
+    def leg(self, way_point: int, start: Place, number: int | None = None) -> Task:
+        """The task to get to a way-point from a place [m] where the part rests, or in the first leg where it starts.
+
+        Raises ValueError where it cannot be reached from there.
+
+        number: of the leg, where several may lead to a way-point.
+        """
+        leg = way_point if number is None else number
+        case = _from(self.case, start if leg else None)
+        return Task(case, self.through[way_point], self.settings, f"{self.name}_leg_{leg}")
+
+
+def _from(case: Case, start: Place | None) -> Case:
+    """The case whose part rests at a place [m] in the beginning; None: it begins as it does."""
+    rest = {} if start is None else {"position": start, "velocity": (0.0, 0.0)}
+    return case.model_copy(update={"part": case.part.model_copy(update=rest), "source": None})
+
+
+def movers(case: Case, settings: Settings, target: Place) -> tuple[int, ...]:
     """The numbers of the actuators that take part on the way to a target [m]: those that are told, or the nearest."""
     if settings.actuators is not None:
         return tuple(sorted(settings.actuators))
@@ -83,7 +127,7 @@ def able(case: Case, settings: Settings) -> list[int]:
     return [k for k, actuator in enumerate(case.actuators) if not _unfit(actuator, settings)]
 
 
-def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None) -> Iterator[Mistake]:
+def mistakes(case: Case, settings: Settings, target: Place | None) -> Iterator[Mistake]:
     """Yield what is wrong with settings and a target [m] for a case, None where that is not known."""
     if not isinstance(case.plate, PlateCase):
         yield "case", "must have a plate on actuators; got a platform"
@@ -152,7 +196,7 @@ def _unfit(actuator: ActuatorCase, settings: Settings) -> str:
     return "is 0, which leaves no bounds" if actuator.stroke == 0 and settings.stroke is None else ""
 
 
-def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
+def misplaced(case: Case, target: Place) -> Iterator[str]:
     """Yield that a target [m] is not on the plate of a case, or so near its rim that the part does not fit."""
     if not isinstance(case.plate, PlateCase):
         return
@@ -172,7 +216,7 @@ def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
         )
 
 
-def _from_way(places: FloatArray, start: tuple[float, float], target: tuple[float, float]) -> FloatArray:
+def _from_way(places: FloatArray, start: tuple[float, float], target: Place) -> FloatArray:
     """How far places (n, 2) are from the straight way from a start to a target, all in m."""
     way = np.subtract(target, start)
     length = float(way @ way)

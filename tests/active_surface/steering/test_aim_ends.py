@@ -11,11 +11,10 @@ from sweeps import PLATE
 
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, Task, aim, plan
-from active_surface.steering.aiming import aim_over
+from active_surface.steering.aiming import aim_over, plan_over
 from active_surface.steering.disturbances import Disturbance
 from active_surface.steering.objectives import SAMPLES, Trials
 from active_surface.steering.paths import Paths
-from active_surface.steering.planning import plan_over
 from active_surface.steering.report import lines, plan_figures, plan_lines, scatter_line
 from active_surface.steering.scatter import Scatter
 from coupling import build_surface, read_case
@@ -64,7 +63,7 @@ def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkey
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("active_surface.steering.stages.scattered", stop)
+    monkeypatch.setattr("active_surface.steering.aiming._scatter", stop)
     aimed = aim(Task(case, TARGET), tmp_path / "out")
     assert aimed.interrupted and aimed.reached and aimed.scatter is None
     assert [file.name for file in aimed.files] == ["base_aimed.toml"]
@@ -92,7 +91,7 @@ def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
 
     assert threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
-    monkeypatch.setattr("active_surface.steering.stages.write_case", write)
+    monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
     aimed = aim_over(build_surface(case), Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
     assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
 
@@ -103,7 +102,7 @@ def test_an_interruption_while_the_file_is_written_is_heard_after_it(tmp_path, m
         signal.raise_signal(signal.SIGINT)
         return file
 
-    monkeypatch.setattr("active_surface.steering.stages.write_case", write)
+    monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
     case, settings = case_of(tmp_path), Settings(paths=2, scatter=5)
     task = Task(case, TARGET, settings) if over is aim_over else Route(case, (TARGET,), settings)
     found = over(build_surface(case), task, file=tmp_path / "a.toml")
@@ -132,7 +131,7 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
 def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, monkeypatch):
     """The second leg does not settle: its drives are in the case all the same."""
     case, settings, rests = case_of(tmp_path), Settings(paths=40, scatter=3), iter([True, False])
-    monkeypatch.setattr("active_surface.steering.planning.settled", lambda path: next(rests))
+    monkeypatch.setattr("active_surface.steering.aiming.settled", lambda path: next(rests))
     way = (TARGET, (6e-5, 5e-5))
     planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
     assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 1: ")

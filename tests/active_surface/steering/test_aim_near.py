@@ -12,6 +12,7 @@ from active_surface.steering.knobs import Knob, Knobs, Stop, own_drives
 from active_surface.steering.report import hints
 from active_surface.steering.search import _smallest_step
 from coupling import build_surface, run_case
+from coupling.case import find_field
 
 CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
 
@@ -57,11 +58,14 @@ def test_bounds_that_leave_out_the_own_drives_are_kept(case, own):
     assert max(actuator.cycles for actuator in aimed.legs[0].actuators) <= 2
 
 
-def test_a_hint_names_what_stood_at_its_bound():
-    strokes = [Stop(Knob(k, "stroke", 0.0, 12e-6), True) for k in (0, 2)]
-    slow, many = Stop(Knob(1, "frequency", 60.0, 600.0), False), Stop(Knob(1, "cycles", 1.0, 3.0), True)
+def test_a_hint_names_what_stood_at_its_bound(case):
+    def stop(actuator, key, low, high, highest=True):
+        return Stop(Knob(find_field(case, None, f"actuators.{actuator}.{key}"), low, high), highest)
+
+    strokes = [stop(k, "stroke", 0.0, 12e-6) for k in (0, 1)]
+    slow, many = stop(1, "frequency", 60.0, 600.0, False), stop(1, "cycles", 1.0, 3.0)
     assert hints([*strokes, slow, many]) == [
-        'actuators 0 and 2 stood at their largest stroke, 12 um; stroke = ["0 um", "24 um"] in [aim] widens it',
+        'actuators 0 and 1 stood at their largest stroke, 12 um; stroke = ["0 um", "24 um"] in [aim] widens it',
         'actuator 1 stood at its smallest frequency, 60 Hz; frequency = ["30 Hz", "600 Hz"] in [aim] widens it',
         "actuator 1 stood at its largest number of cycles, 3; cycles = [1, 6] in [aim] widens it",
     ]

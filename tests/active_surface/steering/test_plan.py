@@ -9,8 +9,8 @@ from sweeps import PLATE, read_text
 
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, Task, plan
-from active_surface.steering.planning import plan_over
-from active_surface.steering.schedule import Leg, lasting, scheduled
+from active_surface.steering.aiming import plan_over
+from active_surface.steering.legs import Leg, scheduled
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
@@ -48,7 +48,9 @@ def test_a_schedule_is_the_drives_of_its_legs_one_after_the_other(case):
     first[2] = own[2].model_copy(update={"stroke": 3e-5, "cycles": 1, "delay": 1.1e-3})
     second = [own[0].model_copy(update={"stroke": 2e-5, "frequency": 700.0, "cycles": 2, "delay": 3e-4}), *own[1:]]
     legs = [Leg(0.0, tuple(first), (0, 2)), Leg(0.0123, tuple(second), (0,))]
-    assert lasting(first, (0, 2)) == pytest.approx(3 / 400 + 6 * 2e-4) and lasting(first, (2,)) == pytest.approx(3.6e-3)
+    assert legs[0].end == pytest.approx(3 / 400 + 6 * 2e-4) and legs[0]._replace(movers=(2,)).end == pytest.approx(
+        3.6e-3
+    )
     whole = scheduled(case, legs, 0.02)
     assert whole.run.duration == 0.02 and [bool(actuator.segments) for actuator in whole.actuators][:4] == [1, 0, 1, 0]
     times = np.linspace(0, 0.02, 4001)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from active_surface.steering import Task, aim
-from active_surface.steering.spread import spread_drives
-from active_surface.steering.tables import Settings
+from active_surface.steering.objectives import spread_drives
+from active_surface.steering.settings import Settings
 from coupling import run_case
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
-from active_surface.steering.disturbances import flattened
 from coupling.case import Frequency, Length, Point, Table, Time, quoted
 
 
@@ -60,11 +60,20 @@ class _Sizes:
 
     def validate(self, value: object, handler: Any) -> object:
         if isinstance(value, dict):
-            return dict(flattened(value))
+            return dict(_flattened(value))
         return handler(value)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+
+
+def _flattened(tables: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:
+    """Yield each path in nested tables with its value: part.mass and "part.mass" are the same."""
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from _flattened(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
 
 
 MAX_PATHS, MAX_PATHS_DISTURBED = 10_000, 40_000

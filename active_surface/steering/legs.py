@@ -1,0 +1,243 @@
+"""Legs: the way to a target in as few of them as possible, and the schedule of legs that follow each other.
+
+A short leg takes few paths to find. If it misses, another starts where the part rests, nearer to the target. As a last
+resort one leg takes the whole duration. Where the case's own drives end near the target, their neighbourhood is
+searched before all this.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from active_surface.steering.knobs import Knobs, Stop, at_rest, own_drives, shortest
+from active_surface.steering.paths import Paths, cost, driven, path_of, settled
+from active_surface.steering.search import Search
+from active_surface.steering.task import Place, Task, is_schedulable
+from coupling import ProgressCallback, build_drive
+from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
+from particle import SurfaceMotion, Trajectory
+
+PAUSE: Final = 5e-4  # s, at rest between legs
+STEP: Final = 1e-6  # s, of which times of legs are multiples
+SHORTEST: Final = 1e-9  # s: shorter waits are left out
+DIGITS: Final = 12  # decimals of times in s, as many as a file shows
+MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
+MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
+ROBUST_AROUND: Final = 0.25  # of all paths, of a robust search there
+NEAR: Final = 0.5  # of the distance at the start: own drives that leave less are searched around
+FIRST: Final = 0.5  # of the duration: longest first leg
+CYCLES: Final = 3  # of the fastest drive allowed: shortest leg
+NEARER: Final = 0.95  # of the distance before: a leg must leave less to be kept
+
+
+class Leg(NamedTuple):
+    """The drives of one leg."""
+
+    start: float  # s
+    actuators: tuple[ActuatorCase, ...]
+    movers: tuple[int, ...]  # the numbers of those that move
+
+    @property
+    def end(self) -> float:
+        """When the last of its drives has ended [s]."""
+        return self.start + max((_end(self.actuators[k]) for k in self.movers), default=0.0)
+
+
+class Way(NamedTuple):
+    """Legs, the case with their drives, its path and how far from the target this ends."""
+
+    legs: tuple[Leg, ...]
+    case: Case
+    path: Trajectory
+    cost: float  # m
+    stops: tuple[Stop, ...]  # knobs at a bound
+
+    @property
+    def end(self) -> float:
+        """When another leg may begin [s]: a little after the last drive has ended and the part has come to rest."""
+        rest = self.path.at_rest_since
+        ended = max(self.legs[-1].end, float(self.path.time[-1]) if rest is None else rest)
+        return round(math.ceil((ended + PAUSE) / STEP) * STEP, 9)
+
+
+class Approach:
+    """The legs that bring the part of a task to its target, as they are found."""
+
+    def __init__(
+        self, surface: SurfaceMotion, task: Task, threads: int | None, tell: ProgressCallback, joined: bool = False
+    ) -> None:
+        """tell: is called with the number of paths so far and its maximum.  joined: other legs follow in a schedule."""
+        self._surface, self._task, self._threads, self._tell, self._joined = surface, task, threads, tell, joined
+        self._horizon, self._before, self._searches = task.case.run.duration, 0, 0
+        self._search: tuple[Search, float] | None = None  # under way, for a leg from a time [s] on
+        self._chain: Way | None = None  # legs to which another may be added
+        self._best: Way | None = None
+
+    def run(self) -> None:
+        """Search; after Ctrl-C `close` has the best so far."""
+        task, max_paths, robust = self._task, self._task.settings.max_paths, self._task.settings.is_robust
+        if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
+            self._try(task, 0.0, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
+        self._chain = None
+        if not robust and not self.reached and FIRST * self._horizon >= self._min_duration(task):
+            self._try(task.within(FIRST * self._horizon), 0.0, MAX_PATHS[0])
+            for at_most in MAX_PATHS[1:]:
+                following, start = self._next()
+                if self.reached or following is None:
+                    break
+                self._try(following, start, at_most)
+        if not self.reached:
+            self._try(task, 0.0, max_paths, wide=True)
+
+    @property
+    def paths(self) -> int:
+        """How many have been followed."""
+        return self._before + (self._search[0].paths if self._search else 0)
+
+    @property
+    def reached(self) -> bool:
+        """Whether the part comes to rest within the tolerance and no drive moves it again."""
+        if self._best is None or self._task.settings.is_robust:
+            return False
+        return self._best.cost <= self._task.settings.tolerance
+
+    def close(self) -> Way:
+        """The best way; KeyboardInterrupt where there is none."""
+        self._end_leg()
+        if self._best is None:
+            raise KeyboardInterrupt
+        return self._best
+
+    def look(self) -> Trajectory | None:
+        """The path of the drives that are best so far in the current search; None: there are none."""
+        way = self._way() or self._best
+        return way.path if way else None
+
+    def _follow_own(self) -> bool:
+        """Follow the path of the case's own drives; return whether to search around them."""
+        task, settings = self._task, self._task.settings
+        own = own_drives(task.case)
+        moving = _moving(own)
+        others = [k for k, one in enumerate(own) if amplitude(one) and k not in moving]
+        if not moving or (others and (self._joined or settings.actuators)):
+            return False
+        if settings.actuators and not set(moving) <= set(settings.actuators):
+            return False
+        if Knobs(task.case, settings, moving, around=True).own is None:  # beyond bounds that the user states
+            return False
+        way = self._followed((Leg(0.0, own, moving),), ())
+        self._before += 1
+        away = math.dist(task.case.part.position, task.target)
+        if not settled(way.path) or way.cost >= away:
+            return False
+        if not settings.is_robust:
+            self._keep(way)
+        return way.cost <= NEAR * away
+
+    def _try(self, task: Task, start: float, at_most: int, around: bool = False, wide: bool = False) -> None:
+        """Search for the drives of a leg that begins at a time [s], on so many paths at most."""
+        if (left := self._task.settings.max_paths - self.paths) <= 0:
+            return
+        paths = Paths(task.case, self._surface, self._threads)
+        knobs = Knobs(task.case, task.settings, task.movers, around, wide)
+        self._search = Search(paths, task, knobs, self._count, min(at_most, left), self._searches), start
+        self._searches += 1
+        self._search[0].run()
+        self._end_leg()
+
+    def _end_leg(self) -> None:
+        """Keep the leg of the current search if it brings the part near enough."""
+        way = self._way()
+        self._before, self._search = self.paths, None
+        if way is None:
+            return
+        tolerance = self._task.settings.tolerance
+        if self._chain is None or way.cost <= max(NEARER * self._chain.cost, tolerance):
+            self._chain = way
+        self._keep(way)
+
+    def _way(self) -> Way | None:
+        """The legs before the current search and the best of its own; None: it has no drives yet."""
+        if self._search is None or not self._search[0].has_drives:
+            return None
+        search, start = self._search
+        actuators = search.actuators
+        leg = Leg(start, actuators, _moving(actuators) if search.knobs.around else search.movers)
+        chain = self._chain if start > 0 else None
+        way = self._followed((*chain.legs, leg) if chain else (leg,), (chain.stops if chain else ()) + search.stops)
+        return way._replace(cost=search.cost) if self._task.settings.is_robust else way
+
+    def _followed(self, legs: tuple[Leg, ...], stops: tuple[Stop, ...]) -> Way:
+        """The way of legs."""
+        case, task = self._task.case, self._task
+        case = scheduled(case, legs, self._horizon) if len(legs) > 1 else driven(case, legs[0].actuators)
+        path = path_of(Paths(case, self._surface, self._threads), case)
+        away = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
+        return Way(legs, case, path, away, stops)
+
+    def _keep(self, way: Way) -> None:
+        if self._best is None or way.cost < self._best.cost:
+            self._best = way
+
+    def _next(self) -> tuple[Task | None, float]:
+        """The task of the next leg, None where there is none, and when it begins [s]."""
+        if self._chain is None or not settled(self._chain.path):
+            return None, 0.0
+        start = self._chain.end
+        try:
+            task = self._task.within(self._horizon - start, end_of(self._chain.path))
+        except ValueError:  # no way leads on from here, as from above the only actuator
+            return None, start
+        return (task if self._horizon - start >= self._min_duration(task) else None), start
+
+    def _min_duration(self, task: Task) -> float:
+        return CYCLES * shortest(task.case, task.settings, task.movers)
+
+    def _count(self, done: int, _: int) -> None:
+        max_paths = self._task.settings.max_paths
+        self._tell(min(self._before + done, max_paths), max_paths)
+
+
+def _moving(actuators: tuple[ActuatorCase, ...]) -> tuple[int, ...]:
+    """The numbers of actuators whose strokes go up and down."""
+    return tuple(k for k, actuator in enumerate(actuators) if is_schedulable(actuator) and actuator.stroke)
+
+
+def end_of(path: Trajectory) -> Place:
+    """Where a path ends [m]."""
+    x, y = path.position[-1].tolist()
+    return x, y
+
+
+def scheduled(case: Case, legs: Sequence[Leg], duration: float) -> Case:
+    """The case of a duration [s] in which the drives of legs follow each other, as segments of each actuator."""
+    actuators = tuple(_over_time(k, actuator, legs) for k, actuator in enumerate(case.actuators))
+    run = case.run.model_copy(update={"duration": duration})
+    return case.model_copy(update={"actuators": actuators, "run": run, "source": None})
+
+
+def _over_time(k: int, actuator: ActuatorCase, legs: Sequence[Leg]) -> ActuatorCase:
+    """Actuator k in all legs: waits and cycles, or at rest."""
+    segments: list[SegmentCase] = []
+    now = 0.0
+    for leg in legs:
+        if k in leg.movers:
+            own = leg.actuators[k]
+            wait = round(leg.start + own.delay - now, DIGITS)
+            if wait > SHORTEST:
+                segments.append(SegmentCase(cycle="hold", dwell=wait))
+            cycles = own.cycles or 1
+            segments.append(SegmentCase(stroke=own.stroke, frequency=own.frequency, cycles=cycles, dwell=own.dwell))
+            now = leg.start + _end(own)
+    if not segments:
+        return at_rest(actuator)
+    unset = dict.fromkeys(("stroke", "force", "frequency", "table", "cycles"))
+    same = {"cycle": "up-down", "dwell": 0.0, "repeats": 1, "delay": 0.0, "phase": 0.0, "ramp": 0.0}
+    return actuator.model_copy(update=unset | same | {"segments": tuple(segments)})
+
+
+def _end(actuator: ActuatorCase) -> float:
+    """When a drive with a number of cycles ends [s]."""
+    return actuator.delay + build_drive(actuator).segments().duration
