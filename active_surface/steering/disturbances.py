@@ -75,14 +75,11 @@ def deviations(case: Case, sizes: Mapping[str, object] | None) -> tuple[Deviatio
 
 
 def _deviation(case: Case, path: str, size: object) -> Deviation:
-    if path == FRICTION:
-        amount, is_relative = _size(size, "")
-        return Deviation(path, (), amount, is_relative)
-    if path == START:
-        amount, is_relative = _size(size, "m")
-        if is_relative:
+    if path in (FRICTION, START):
+        amount, is_relative = _size(size, "m" if path == START else "")
+        if path == START and is_relative:
             raise ValueError(f'must be a length such as "1 um", of which nothing is a share; got {quoted(size)}')
-        return Deviation(path, (), amount, False)
+        return Deviation(path, (), amount, is_relative)
     field = find_field(case, lattice_of(case)[0], path)
     head = field.locations[0]
     if head[0] not in ("part", "friction", "actuators") or (head[0] == "actuators" and head[2] in OF_PLATE):

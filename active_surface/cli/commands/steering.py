@@ -9,7 +9,7 @@ import click
 
 from active_surface.cli.command import Answer, command, option
 from active_surface.cli.ctrl_c import INTERRUPTED
-from active_surface.cli.options import POSITIVE, RESULTS, Output, Threads, counted
+from active_surface.cli.options import POSITIVE, RESULTS, Output, Overwrite, Threads, counted
 from active_surface.cli.refusal import check_kind
 
 if TYPE_CHECKING:
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
 SHARE = click.FloatRange(min=0, max=1, min_open=True, max_open=True)
 MISSED = 1  # the exit code where a target is not reached
-
-Overwrite = Annotated[bool, option("Replace the results of another search of this name.")]
 
 
 @command
