@@ -18,6 +18,7 @@ from coupling.pictures.plate import (
 from coupling.pictures.portrait import (
     Portrait,
     chosen_drives,
+    cycles_of,
     decisive_moment,
 )
 from coupling.pictures.run import draw_run, draw_surface

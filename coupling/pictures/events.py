@@ -26,7 +26,7 @@ MARKS: Final[dict[EventKind, Mark]] = {
     EventKind.SLIPS: Mark(">", "black", "slips"),
     EventKind.STOPS: Mark("s", "black", "stops"),
     EventKind.REVERSES: Mark("D", "white", "turns back"),
-    EventKind.DETACHES: Mark("^", "white", "comes off", "came off"),
+    EventKind.DETACHES: Mark("*", "white", "comes off", "came off"),
     EventKind.LANDS: Mark("v", "white", "lands"),
     EventKind.LEAVES_PLATE: Mark("X", "white", "leaves the plate", "left the plate"),
     EventKind.OVERLOADS: Mark("P", "white", "overload", "overloaded"),

@@ -165,10 +165,11 @@ def _draw_heights(
     figure.colorbar(filled, ticks=levels[labelled], **bar).add_lines(lines)
 
 
-def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> None:
-    """Show on a map where a window (2, 2) [m] is."""
+def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> Artist:
+    """Show on a map where a window (2, 2) [m] is; return its key."""
     corner, sides = window[0] * unit.per_si, np.ptp(window, axis=0) * unit.per_si
-    axes.add_patch(Rectangle(tuple(corner), *sides, fill=False, edgecolor="black", linewidth=1.2, zorder=4))
+    look: dict[str, Any] = {"fill": False, "edgecolor": "black", "linewidth": 1.2, "zorder": 4}
+    return axes.add_patch(Rectangle(tuple(corner), *sides, **look, label="frame of the close-up"))
 
 
 def join(figure: Figure, axes: list[Axes], unit: Unit, window: FloatArray) -> None:

@@ -15,7 +15,7 @@ from coupling.display import most_deflected, moving_heights
 from coupling.drives import travel
 from coupling.margins import LOSSES, MarginCurves, Margins
 from coupling.pictures.plate import Relief, relief_of
-from particle import AnyDrive, Event, EventKind, Rows, Samples
+from particle import AnyDrive, Event, EventKind, Rows, Samples, SegmentDrive
 
 if TYPE_CHECKING:
     from coupling.display import DisplaySurface
@@ -48,6 +48,7 @@ class Portrait:
     margins: MarginCurves
     by_pull_off: bool  # whether the distance from coming off is over the pull-off force, not the weight
     decisive: float  # s, when it was lost, first slipped or came nearest to slipping
+    cycles: Sequence[float]  # s, of all drives that move; none: the motion was measured
     complete: bool = True  # whether the files hold the run to its end
 
     @property
@@ -97,7 +98,19 @@ def portrait_of(result: Result) -> Portrait:
         result.margin_curves,
         margins.by_pull_off,
         decisive_moment(trajectory.events, margins),
+        () if scene.fits else cycles_of(drives),
     )
+
+
+def cycles_of(drives: Sequence[AnyDrive]) -> list[float]:
+    """The times [s] of one cycle of the drives that move, each once, the shortest first."""
+    found = set()
+    for drive in dict.fromkeys(drives):
+        if travel(drive) > 0:
+            pieces = drive.segments()
+            repeats = pieces.repeats > 1 and not isinstance(drive, SegmentDrive)  # whose pass has many cycles
+            found.add(pieces.span if repeats else 1 / drive.frequency)
+    return sorted(found)
 
 
 def chosen_drives(case: Case, lifts: Sequence[AnyDrive], margins: Margins) -> dict[str, AnyDrive]:

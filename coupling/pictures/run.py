@@ -98,7 +98,7 @@ def _spans(portrait: Portrait) -> list[Span]:
     turns = [np.count_nonzero(np.diff(np.sign(velocity)) > 1) for velocity in moving]
     if max(turns, default=0) <= MANY:
         return [(0.0, end)]
-    length = SHOWN * end / max(turns)
+    length = SHOWN * min(portrait.cycles, default=end / max(turns))
     begin = float(np.clip(portrait.decisive - length / 2, 0.0, end - length))
     return [(0.0, end), (begin, begin + length)]
 
@@ -117,14 +117,10 @@ def _draw_column(
     lost = [event.time for event in portrait.events if event.kind in LOSSES]
     panels = [figure.add_subplot(place) for place in places[1:]]
     for panel, some in zip(panels, curves, strict=True):
-        other = draw_over_time(panel, portrait.rows, some, unit, span)
+        keys += draw_over_time(panel, portrait.rows, some, unit, span, portrait.cycles, (first, last))
         for time in lost:
             panel.axvline(time * unit.per_si, color="black", linewidth=1.0, linestyle="--")
         panel.tick_params(labelbottom=panel is panels[-1])
-        if not first:
-            panel.set_ylabel("")
-        if other is not None and not last:
-            other.set_ylabel("")
     figure.align_ylabels(panels)
     panels[-1].set_xlabel(f"time [{unit.name}]")
     return keys

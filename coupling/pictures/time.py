@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from textwrap import fill
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from common import NOTHING, Unit, unit_for
+from common import NOTHING, Unit, quantity_text, unit_for
 from coupling.pictures.figure import plain_ticks
 from coupling.pictures.portrait import Portrait
 from particle import PATH_COLOUR, Rows, shade
@@ -28,7 +32,9 @@ LOOKS: Final[tuple[tuple[str, Any], ...]] = (
 )
 NARROW = 4.0  # inches: a figure with two keys a line
 LETTERS = 18  # of a line of a label
-CROWDED, STEP = 2.0, 2.5  # points: between turns of a curve that becomes a band; the width of a step of this
+CROWDED, STEP = 2.0, 2.5  # points: between turns of a curve that becomes a band; the least width of a step of this
+THIN = 0.06  # of the values' range: a band that is mostly lower is drawn as its line
+MANY, BAND = 20, 0.35  # cycles of a drive whose steps are whole cycles; how opaque a band is
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,35 +93,55 @@ def velocities_of(portrait: Portrait) -> list[Curves]:
     return curves
 
 
-def draw_over_time(axes: Axes, rows: Rows, curves: Curves, time_unit: Unit, span: Span | None = None) -> Axes | None:
+def draw_over_time(
+    axes: Axes,
+    rows: Rows,
+    curves: Curves,
+    time_unit: Unit,
+    span: Span | None = None,
+    cycles: Sequence[float] = (),
+    labelled: tuple[bool, bool] = (True, True),
+) -> list[Artist]:
     """Draw curves over a span of time [s], with shades where the part does not slip; None: all of it.
 
-    Returns the axes of curves with a scale of their own.
+    cycles: of the drives [s].  labelled: whether the left and the right axis have their labels.
+    Returns keys of what is not a line.
     """
-    begin, end = span or (0.0, float(rows.time[-1]))
-    _draw_lines(axes, curves, time_unit, (begin, end), 0)
+    span = span or (0.0, float(rows.time[-1]))
+    keys = _draw_lines(axes, curves, time_unit, span, cycles, 0)
     shade(axes, rows, time_unit.per_si)
-    axes.set_xlim(begin * time_unit.per_si, end * time_unit.per_si)
+    axes.set_xlim(span[0] * time_unit.per_si, span[1] * time_unit.per_si)
     axes.grid(alpha=0.3)
-    if curves.right is None:
-        return None
-    other = axes.twinx()
-    _draw_lines(other, curves.right, time_unit, (begin, end), 1)
-    for side, colour in ((axes, LOOKS[0][0]), (other, LOOKS[1][0])):
-        side.yaxis.label.set_color(colour)
-        side.tick_params(axis="y", colors=colour)
-    return other
+    sides = [axes]
+    if curves.right is not None:
+        sides.append(axes.twinx())
+        keys += _draw_lines(sides[1], curves.right, time_unit, span, cycles, 1)
+        for side, (colour, _) in zip(sides, LOOKS, strict=False):
+            side.yaxis.label.set_color(colour)
+            side.tick_params(axis="y", colors=colour)
+    for side, shown in zip(sides, labelled, strict=False):
+        if not shown:
+            side.set_ylabel("")
+    return keys
 
 
-def _draw_lines(axes: Axes, curves: Curves, time_unit: Unit, span: Span, first: int) -> None:
+def _draw_lines(
+    axes: Axes, curves: Curves, time_unit: Unit, span: Span, cycles: Sequence[float], first: int
+) -> list[Artist]:
     everything = np.concatenate(list(curves.values.values()))
     everything = everything[np.isfinite(everything)]
     unit = Unit(curves.si, 1.0) if curves.marked is not None else unit_for(everything, curves.si)
+    keys: list[Artist] = []
     for (name, values), (colour, style) in zip(curves.values.items(), LOOKS[first:], strict=False):
         look: dict[str, Any] = {"color": colour, "linestyle": style, "linewidth": 1.2, "label": name}
-        _draw_line(axes, curves.times * time_unit.per_si, values * unit.per_si, np.array(span) * time_unit.per_si, look)
+        width = _bin_width(axes, curves.times, values, span, cycles)
+        if width and _draw_band(axes, curves.times, values * unit.per_si, time_unit, span, width, look):
+            keys = [Patch(facecolor="#808080", alpha=BAND, label=_band_text(width, cycles, span))]
+        else:
+            axes.plot(curves.times * time_unit.per_si, values * unit.per_si, **look)
     if len(curves.values) > 1:
         axes.legend(
+            handles=axes.get_lines(),
             frameon=False,
             fontsize="small",
             loc="lower left",
@@ -134,27 +160,60 @@ def _draw_lines(axes: Axes, curves: Curves, time_unit: Unit, span: Span, first: 
         axes.set_yticks([0])
     text = f"{curves.label} [{unit.name}]"
     axes.set_ylabel(text if len(text) <= LETTERS else f"{fill(curves.label, LETTERS)}\n[{unit.name}]")
+    return keys
 
 
-def _draw_line(axes: Axes, times: FloatArray, values: FloatArray, span: FloatArray, look: dict[str, Any]) -> None:
-    """Draw a curve, or of one that turns too often to be followed, the band that it fills."""
-    inside = (times >= span[0]) & (times <= span[1])
-    turns = int(np.count_nonzero(np.diff(np.sign(np.diff(values[inside & np.isfinite(values)])))))
-    width = 72 * axes.get_position().width * axes.figure.bbox.width / axes.figure.dpi
-    if turns * CROWDED < width:
-        axes.plot(times, values, **look)
-        return
-    bins = int(width / STEP)
-    edges = np.linspace(span[0], span[1], bins + 1)
-    number = np.clip(np.searchsorted(edges, times[inside], side="right") - 1, 0, bins - 1)
-    low, high = np.full(bins, np.inf), np.full(bins, -np.inf)
-    known = np.isfinite(values[inside])
-    np.minimum.at(low, number[known], values[inside][known])
-    np.maximum.at(high, number[known], values[inside][known])
-    low[np.isinf(low)] = high[np.isinf(high)] = np.nan
-    low, high = np.append(low, low[-1:]), np.append(high, high[-1:])
-    axes.fill_between(edges, low, high, step="post", color=look["color"], alpha=0.35, linewidth=0)
+def _bin_width(axes: Axes, times: FloatArray, values: FloatArray, span: Span, cycles: Sequence[float]) -> float:
+    """How long [s] a step of the band is that a curve which turns too often to be followed fills; 0: it is followed.
+
+    It is whole cycles of the slowest drive of those with many in the span: pieces of cycles would beat with the drive.
+    """
+    inside = values[(times >= span[0]) & (times <= span[1]) & np.isfinite(values)]
+    turns = int(np.count_nonzero(np.diff(np.sign(np.diff(inside)))))
+    points = 72 * axes.get_position().width * axes.figure.bbox.width / axes.figure.dpi
+    if turns * CROWDED < points:
+        return 0.0
+    width = STEP * (span[1] - span[0]) / points
+    cycle = _cycle(cycles, span)
+    return cycle * math.ceil(width / cycle) if cycle else width
+
+
+def _cycle(cycles: Sequence[float], span: Span) -> float:
+    """The longest cycle [s] of those that a span has many of; 0: there is none."""
+    return max((one for one in cycles if one * MANY <= span[1] - span[0]), default=0.0)
+
+
+def _draw_band(
+    axes: Axes, times: FloatArray, values: FloatArray, time_unit: Unit, span: Span, width: float, look: dict[str, Any]
+) -> bool:
+    """Draw from the lowest to the highest of a curve in each step of time so wide [s], unless that is thin."""
+    bins = max(int((span[1] - span[0]) / width + 0.01), 1)  # the last one also has what is left over
+    edges = np.append(span[0] + width * np.arange(bins), span[1])
+    known = (times >= span[0]) & (times <= span[1]) & np.isfinite(values)
+    number = np.clip(np.searchsorted(edges, times[known], side="right") - 1, 0, bins - 1)
+    low, high = np.full(bins + 1, np.inf), np.full(bins + 1, -np.inf)
+    np.minimum.at(low, number, values[known])
+    np.maximum.at(high, number, values[known])
+    low[np.isinf(low)] = np.nan
+    high[np.isinf(high)] = np.nan
+    if np.nanmedian(high[:-1] - low[:-1]) < THIN * np.ptp(values[known]):
+        return False
+    low[-1], high[-1] = low[-2], high[-2]
+    band: dict[str, Any] = {"color": look["color"], "alpha": BAND, "linewidth": 0.5}  # seen where it is flat
+    axes.fill_between(edges * time_unit.per_si, low, high, step="post", **band)
     axes.plot([], [], **look)  # its key
+    return True
+
+
+def _band_text(width: float, cycles: Sequence[float], span: Span) -> str:
+    """What a band is, in words."""
+    time = quantity_text(width, "s")
+    cycle = _cycle(cycles, span)
+    if not cycle:
+        return f"lowest to highest in each {time}"
+    count = round(width / cycle)
+    of = " of the slowest drive" if len(cycles) > 1 else ""
+    return f"lowest to highest in {'each cycle' if count == 1 else f'{count} cycles'}{of}, {time}"
 
 
 def limits(values: FloatArray) -> tuple[float, float]:

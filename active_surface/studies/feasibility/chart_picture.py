@@ -66,7 +66,7 @@ def draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float]
 def _ends(columns: FloatArray, own: float, strokes: FloatArray) -> tuple[float, float]:
     """The least and the largest stroke drawn: around the borders and the case."""
     drawn = np.append(columns[np.isfinite(columns)], own)
-    return max(drawn.min() / AROUND, strokes[0] / AROUND), min(drawn.max() * AROUND, max(strokes[1], own) * AROUND)
+    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own) * AROUND)
 
 
 def _draw_validity(

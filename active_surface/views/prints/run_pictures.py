@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -26,7 +27,7 @@ from coupling.pictures import (
     strokes_of,
     velocities_of,
 )
-from particle import State, shade_keys, stretches
+from particle import PATH_COLOUR, State, shade_keys, stretches
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
@@ -56,10 +57,13 @@ def _draw_all(figure: Figure, portrait: Portrait, window: FloatArray | None) -> 
     axes = figure.add_subplot()
     map_axes(axes, unit, portrait.where)
     keys = draw_surface(figure, axes, portrait, unit, width=SHARE * 72 * figure.get_figwidth())
-    if window is not None:
-        draw_window(axes, unit, window)
     line = portrait.samples.position
-    put_keys(figure, draw_path(axes, portrait.rows, line, unit, is_visible(line, portrait.box)) + keys)
+    if window is None:
+        keys = draw_path(axes, portrait.rows, line, unit, is_visible(line, portrait.box)) + keys
+    else:  # whose picture has start and end, which would cover the frame here
+        keys += axes.plot(*(line * unit.per_si).T, color=PATH_COLOUR, linewidth=1.2, label="path")
+        keys.append(draw_window(axes, unit, window))
+    put_keys(figure, keys)
 
 
 def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None:
@@ -96,12 +100,13 @@ def _draw_course(figure: Figure, portrait: Portrait) -> None:
     grid = figure.add_gridspec(len(all_curves) + 1, 1, height_ratios=[STRIP, *[PANEL] * len(all_curves)])
     strip = figure.add_subplot(grid[0])
     panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(all_curves))]
+    bands: list[Artist] = []
     for panel, curves in zip(panels, all_curves, strict=True):
-        draw_over_time(panel, rows, curves, unit)
+        bands += draw_over_time(panel, rows, curves, unit, cycles=portrait.cycles)
         panel.tick_params(labelbottom=panel is panels[-1])
     panels[-1].set_xlabel(f"time [{unit.name}]")
     figure.align_ylabels(panels)
-    keys = shade_keys(rows)
+    keys = bands + shade_keys(rows)
     if stretches(rows.state == State.SLIP):
         keys.append(Patch(facecolor="white", edgecolor="#808080", linewidth=0.5, label="slipping"))
     put_keys(figure, keys + draw_events(strip, portrait, unit.per_si, 72 * SHARE * figure.get_figwidth()))

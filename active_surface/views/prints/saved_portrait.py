@@ -10,7 +10,7 @@ from active_surface.arrays import FloatArray
 from coupling import silent, summary_of
 from coupling.case import PlateCase
 from coupling.display import most_deflected
-from coupling.pictures import Piece, Portrait, Relief, chosen_drives, cut_out, decisive_moment, refined
+from coupling.pictures import Piece, Portrait, Relief, chosen_drives, cut_out, cycles_of, decisive_moment, refined
 from coupling.results import SavedRun
 from coupling.scene import lifts_of, platform_scene
 from meshes import rim_curves
@@ -27,6 +27,7 @@ def portrait_of_saved(run: SavedRun) -> Portrait:
     step = most_deflected(_mean_squares(run))
     platform = None if isinstance(plate, PlateCase) else platform_scene(plate, silent)
     lifts, base = (lifts_of(run.case), ()) if platform is None else (platform.lifts, platform.base)
+    measured = platform is not None and bool(platform.fits)
     margins = summary_of(run.summary).margins
     return Portrait(
         run.name,
@@ -43,6 +44,7 @@ def portrait_of_saved(run: SavedRun) -> Portrait:
         run.margins,
         margins.by_pull_off,
         decisive_moment(run.events, margins),
+        () if measured else cycles_of([*lifts, *base]),
         run.complete,
     )
 
