@@ -15,8 +15,7 @@ from matplotlib.figure import Figure
 from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
 from coupling.case import Case
-from coupling.pictures import draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
-from coupling.pictures.portrait import portrait_of
+from coupling.pictures import draw_path, draw_plate, draw_window, path_window, portrait_of
 
 DOCS = Path(__file__).parent
 CASES = ("transport", "two_actuators")
@@ -41,27 +40,24 @@ def draw(results: list[Result]) -> Figure:
     """Both paths over their plates; short ones in windows of the same frame, beside the whole plate."""
     portraits = [portrait_of(result) for result in results]
     both = np.concatenate([one.samples.position for one in portraits])
-    relief = portraits[0].relief
-    assert relief is not None
-    window = path_window(both, relief.box, relief.actuators)
-    frame = relief.frame if window is None else window
+    plate = portraits[0].plate
+    assert plate is not None
+    window = path_window(both, plate.outline.box, plate.actuators)
+    frame = plate.frame if window is None else window
     figure = Figure(figsize=(12.0 if window is None else 17.0, 5.6), layout="constrained")
     FigureCanvasAgg(figure)
     panels = list(figure.subplots(1, 2 if window is None else 3, squeeze=False)[0])
     keys = []
     if window is not None:
-        whole, unit = panels.pop(0), unit_for(relief.frame, "m")
-        map_axes(whole, unit)
-        keys += draw_plate(figure, whole, relief, unit, relief.frame, "left")
+        whole, unit = panels.pop(0), unit_for(plate.frame, "m")
+        keys += draw_plate(whole, plate, unit, side="left")
         draw_window(whole, unit, window)
         whole.set_title(f"The plate at {portraits[0].when}\n{THEORIES['linear']}", fontsize=10)
     unit = unit_for(frame, "m")
     for axes, one, result in zip(panels, portraits, results, strict=True):
-        assert one.relief is not None and isinstance(result.summary, PlateSummary)
-        map_axes(axes, unit)
-        keys += draw_plate(figure, axes, one.relief, unit, frame)
-        line = one.samples.position
-        keys = draw_path(axes, one.rows, line, unit, is_visible(line, frame)) + keys
+        assert one.plate is not None and isinstance(result.summary, PlateSummary)
+        keys += draw_plate(axes, one.plate, unit, frame)
+        keys = draw_path(axes, one.rows, one.samples.position, unit, frame) + keys
         axes.set_title(
             f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10
         )

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from active_surface.arrays import FloatArray
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
-from common import NOTHING, Drawing, Unit, draw_rim, quantity_text, unit_for
-from coupling.case import Case, PlateCase
+from common import NOTHING, Drawing, quantity_text, unit_for
+from coupling.case import PlateCase
 from coupling.pictures import (
+    PlateView,
     clear_labels,
-    draw_path,
-    draw_window,
-    is_visible,
-    join,
+    draw_maps,
     map_axes,
     path_window,
     put_keys,
@@ -30,8 +26,6 @@ from coupling.pictures import (
     put_title,
     save_picture,
 )
-from fem_plate import frame_around, mark_actuators, marker_size
-from meshes import rim_curves
 from particle import HALO, Trajectory
 
 Place = tuple[float, float]
@@ -43,8 +37,6 @@ FAR = 4.0  # times the spread of the ends: an arrow points to a target farther o
 SHARE_OF_WAY = 0.01  # to a target that is pointed at: the least that the frame shows
 MIN_FRAME = 1e-9  # m
 SHARE = 0.97  # of the ends: at least so many are drawn
-MAX_NUMBERED = 100  # actuators
-MIN_MARKER = 1.5  # points, of actuators too many to be drawn apart
 TARGET: dict[str, Any] = {
     "marker": "D",
     "markerfacecolor": "none",
@@ -76,76 +68,30 @@ def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Pa
     """Draw a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
     assert result.scatter is not None
     case, trajectory, scatter = result.case, result.trajectory, result.scatter
-    way = _way_of(case, trajectory, targets)
-    maps = 1 if way.window is None else 2
+    assert isinstance(case.plate, PlateCase)
+    line, places = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position, np.array(targets)
+    actuators = np.array([actuator.position for actuator in case.actuators])
+    moving = np.array([bool(actuator.stroke) or actuator.segments is not None for actuator in case.actuators])
+    plate = PlateView(case.plate.coarse_mesh.outline, actuators, moving=moving, numbered=True)
+    window = path_window(np.concatenate([line, places]), plate.outline.box, actuators)
+    maps = 1 if window is None else 2
     figure = Drawing(figsize=((maps + 1) * SIZE + 0.8, SIZE + 0.9))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = [figure.add_subplot(1, maps + 1, k + 1) for k in range(maps + 1)]
-    keys = _draw_plate(figure, axes[:maps], case, way)
+    keys, unit = draw_maps(axes[:maps], plate, trajectory, line, window)
+    what = "The path over the plate" if window is None else "The plate"
+    axes[0].set_title(f"{what}, and the actuators by their numbers", fontsize=10)
+    if window is not None:
+        axes[1].set_title("Around the path", fontsize=10)
+    drawn = places * unit.per_si
+    keys += axes[-2].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
+    for number, place in enumerate(drawn if len(drawn) > 1 else []):
+        put_label(axes[-2], str(number), place, (11.5, 11.5), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
     keys += _draw_ends(axes[-1], trajectory, targets[-1], scatter)
     put_title(figure, title)
     put_keys(figure, keys)
     clear_labels(figure)
     return save_picture(figure, path)
-
-
-class _Way(NamedTuple):
-    """A path with its targets, and where it lies on its plate."""
-
-    trajectory: Trajectory
-    line: FloatArray  # (k, 2) m, the path with as many points as make it smooth
-    targets: FloatArray  # (n, 2) m, in their order
-    box: FloatArray  # (2, 2) m, around the plate
-    window: FloatArray | None  # (2, 2) m, around path and targets; None: they are long enough to see on the plate
-
-
-def _way_of(case: Case, trajectory: Trajectory, targets: Sequence[Place]) -> _Way:
-    assert isinstance(case.plate, PlateCase)
-    box, places = case.plate.coarse_mesh.outline.box, np.array(targets)
-    line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
-    actuators = np.array([actuator.position for actuator in case.actuators])
-    return _Way(trajectory, line, places, box, path_window(np.concatenate([line, places]), box, actuators))
-
-
-def _draw_plate(figure: Figure, axes: Sequence[Axes], case: Case, way: _Way) -> list[Artist]:
-    """Draw the path over the plate, or in a window beside it, with the targets; return keys."""
-    frame = frame_around(way.box)
-    unit = unit_for(way.box, "m")
-    keys = _draw_actuators(axes[0], case, frame, unit)
-    axes[0].set_title("The path over the plate, and the actuators by their numbers", fontsize=10)
-    if way.window is not None:
-        axes[0].set_title("The plate, and the actuators by their numbers", fontsize=10)
-        draw_window(axes[0], unit, way.window)
-        frame, whole = way.window, unit
-        unit = unit_for(frame, "m")
-        _draw_actuators(axes[1], case, frame, unit)
-        axes[1].set_title("Around the path", fontsize=10)
-        join(figure, list(axes), whole, frame)
-    keys += draw_path(axes[-1], way.trajectory, way.line, unit, is_visible(way.line, frame))
-    drawn = way.targets * unit.per_si
-    keys += axes[-1].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
-    for number, place in enumerate(drawn.tolist() if len(drawn) > 1 else []):
-        put_label(axes[-1], str(number), place, (11.5, 11.5), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
-    return keys
-
-
-def _draw_actuators(axes: Axes, case: Case, frame: FloatArray, unit: Unit) -> list[Artist]:
-    """Draw the rim and the actuators within a frame (2, 2) [m], with their numbers; return keys."""
-    assert isinstance(case.plate, PlateCase)
-    map_axes(axes, unit)
-    draw_rim(axes, rim_curves(case.plate.coarse_mesh.outline), unit.per_si)
-    axes.set_xlim(*(frame[:, 0] * unit.per_si))
-    axes.set_ylim(*(frame[:, 1] * unit.per_si))
-    keys: list[Artist] = []
-    moving = np.array([bool(actuator.stroke) or actuator.segments is not None for actuator in case.actuators])
-    places = np.array([actuator.position for actuator in case.actuators])
-    size = marker_size(places, frame) or MIN_MARKER
-    for some, colour, label in ((moving, "#7fa8c9", "moving actuator"), (~moving, "white", "actuator at rest")):
-        keys += mark_actuators(axes, places[some], frame, unit.per_si, size=size, colour=colour, label=label)
-    within = ((places > frame[0]) & (places < frame[1])).all(axis=1)
-    for number in np.flatnonzero(within).tolist() if len(places) <= MAX_NUMBERED else ():
-        put_label(axes, str(number), places[number] * unit.per_si, (0, -6), color="#606060", **WORDS)
-    return keys
 
 
 def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:

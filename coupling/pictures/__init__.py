@@ -1,29 +1,33 @@
 """Pictures of cases and runs, which register here how they are drawn."""
 
 from coupling.pictures.case import draw_case
-from coupling.pictures.events import APART, MARKS, draw_events
-from coupling.pictures.figure import map_axes, plain_ticks, put_keys, put_title, save_picture
-from coupling.pictures.labels import clear_labels, put_label
-from coupling.pictures.path import PITCHES, draw_path, is_visible, path_window
+from coupling.pictures.figure import (
+    clear_labels,
+    map_axes,
+    plain_ticks,
+    put_keys,
+    put_label,
+    put_title,
+    save_picture,
+)
 from coupling.pictures.plate import (
-    Piece,
-    Relief,
+    PITCHES,
+    PlateView,
     Scale,
-    cut_out,
+    draw_maps,
+    draw_path,
     draw_plate,
     draw_window,
-    join,
-    refined,
+    is_visible,
+    path_window,
 )
-from coupling.pictures.portrait import (
-    Portrait,
-    chosen_drives,
-    cycles_of,
-    decisive_moment,
-)
-from coupling.pictures.run import draw_run, draw_surface
+from coupling.pictures.portrait import Portrait, chosen_drives, portrait_of
+from coupling.pictures.run import draw_run, draw_way
 from coupling.pictures.time import (
+    MARKS,
     Curves,
+    curves_of,
+    draw_events,
     draw_over_time,
     margins_over_time,
     strokes_of,

@@ -1,37 +1,41 @@
-"""The plate in the picture of a run, whole and in the window: colours and lines of heights, rim and actuators."""
+"""The plate as all pictures have it, whole and in a window: rim, actuators, heights, and the path over it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
-from matplotlib.figure import Figure
 from matplotlib.patches import ConnectionPatch, Rectangle
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
-from matplotlib.tri import Triangulation, UniformTriRefiner
+from matplotlib.tri import CubicTriInterpolator, Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
-from common import STEPS, Unit, draw_rim, unit_for
-from coupling.display import onto_plate
-from fem_plate import Shapes, distance_drawn, extent, frame_around, mark_actuators
-from meshes import rim_curves
+from common import NOTHING, STEPS, Unit, draw_rim, figure_of, quantity_text, unit_for
+from coupling.pictures.figure import map_axes, put_label
+from fem_plate import distance_drawn, extent, frame_around, mark_actuators, marker_size, pitch
+from meshes import Outline, rim_curves
+from particle import HALO, PLACE, RING, Rows, draw_line
 
-if TYPE_CHECKING:
-    from coupling.display import DisplaySurface
-
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Piece = tuple[FloatArray, IntArray, FloatArray]
-"""Points (n, 2) [m], triangles (m, 3) and deflections (n,) [m] that cover a piece of a plate."""
 
+SHORT = 1 / 6  # of the plate's longer side: a shorter path gets a window
+VISIBLE = 1 / 1000  # of the plate's longer side: a shorter path is drawn as a point
+MIN_LENGTHS, MAX_LENGTHS = 2.5, 4.0  # of the path's extent: the side of the window,
+PITCHES = 2.2  # which shows so many pitches if it can
 MAX_TRIANGLES = 60_000  # of a mesh that is refined to be drawn
 MAX_HALVINGS = 4  # of its edges
 AXES_WIDTH = 330.0  # points, about
+MIN_MARKER = 1.5  # points, of actuators too many to be drawn apart where some of them move
+MAX_NUMBERED = 100  # actuators
+NUMBERS: dict[str, Any] = {"color": "#606060", "fontsize": 9, "path_effects": HALO}
 LINES_APART = 8.0  # points: where actuators stand closer together, contour lines would merge
 FLAT = 1e-9  # of the largest height: smaller differences are 0
 SHALLOW = 0.01  # of the largest height: shallower hollows get no colour of their own
@@ -63,90 +67,94 @@ class Scale(NamedTuple):
         return Scale(unit, 0.0, high, UPWARDS)
 
 
-class Relief(NamedTuple):
-    """A plate at one moment."""
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """A plate at one moment, as heights of a triangle mesh."""
 
-    box: FloatArray  # (2, 2) m, around it
+    points: FloatArray  # (n, 2) m
+    triangles: IntArray  # (m, 3)
+    deflection: FloatArray  # (n,) m
+    exact: Callable[[FloatArray], FloatArray] | None = None  # deflections (k,) [m] at points (k, 2); None: cubics
+
+    def within(self, frame: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
+        """Points, triangles and deflections within a frame (2, 2) [m], refined until contours look smooth."""
+        lowest, highest = (f(self.points[self.triangles], axis=1) for f in (np.min, np.max))
+        inside = ((highest > frame[0]) & (lowest < frame[1])).all(axis=1)
+        used, rows = np.unique(self.triangles[inside], return_inverse=True)
+        points, triangles, w = self.points[used], rows.reshape(-1, 3), self.deflection[used]
+        halvings = min(int(math.log(max(MAX_TRIANGLES / max(len(triangles), 1), 1), 4)), MAX_HALVINGS)
+        if not halvings:
+            return points, triangles, w
+        mesh = Triangulation(*points.T, triangles)
+        fine = UniformTriRefiner(mesh).refine_triangulation(subdiv=halvings)
+        xy = np.stack([fine.x, fine.y], axis=1)
+        if self.exact is None:
+            heights = CubicTriInterpolator(mesh, w, kind="geom")(fine.x, fine.y).filled(0.0)
+        else:
+            heights = self.exact(xy)
+        return xy, fine.triangles.astype(np.int64), heights
+
+
+@dataclass(frozen=True, eq=False)
+class PlateView:
+    """A plate as pictures show it."""
+
+    outline: Outline
     actuators: FloatArray  # (N, 2) m
-    deflection: FloatArray  # (n,) m, of all of it
-    within: Callable[[FloatArray], Piece]  # the piece within a frame (2, 2) [m]
-    rim: Callable[[float], list[FloatArray]]  # its curves (k, 2) [m], with points so far apart [m]
+    relief: Relief | None = None  # None: without heights
+    moving: BoolArray | None = None  # (N,), which actuators look as moving ones; None: all look the same
+    numbered: bool = False  # whether actuators have their numbers, which `clear_labels` moves
 
     @property
     def frame(self) -> FloatArray:
         """The corners (2, 2) [m] of a picture of all of it."""
-        return frame_around(self.box)
-
-
-def relief_of(shapes: Shapes, surface: DisplaySurface, heights: FloatArray) -> Relief:
-    """The plate with its moving drives at heights (K,) [m]."""
-    return Relief(
-        shapes.outline.box,
-        shapes.points,
-        surface.deflection(heights[None])[0],
-        lambda frame: fine_piece(shapes, surface, heights, frame),
-        lambda spacing: rim_curves(shapes.outline, spacing),
-    )
+        return frame_around(self.outline.box)
 
 
 def draw_plate(
-    figure: Figure,
     axes: Axes,
-    relief: Relief,
+    view: PlateView,
     unit: Unit,
-    frame: FloatArray,
+    frame: FloatArray | None = None,
     side: Literal["left", "right"] = "right",
     width: float = AXES_WIDTH,
 ) -> list[Artist]:
-    """Draw a plate within a frame (2, 2) [m] into axes so wide [points], with its bar at a side; return keys."""
-    scale = Scale.of(relief.deflection)
-    points, triangles, w = relief.within(frame)
-    lined = distance_drawn(relief.actuators, frame, width) >= LINES_APART
-    _draw_heights(figure, axes, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side, lined)
-    draw_rim(axes, relief.rim(extent(frame) / 200), unit.per_si)
+    """Draw a plate within a frame (2, 2) [m], by default all of it, into axes so wide [points]; return keys.
+
+    side: of the axes, at which the bar of heights stands.
+    """
+    frame = view.frame if frame is None else frame
+    if view.relief is not None:
+        _draw_heights(axes, view.relief, unit, frame, side, distance_drawn(view.actuators, frame, width))
+    map_axes(axes, unit)
+    draw_rim(axes, rim_curves(view.outline, extent(frame) / 200), unit.per_si)
     axes.set_xlim(*(frame[:, 0] * unit.per_si))
     axes.set_ylim(*(frame[:, 1] * unit.per_si))
-    return mark_actuators(axes, relief.actuators, frame, unit.per_si, width)
-
-
-def fine_piece(shapes: Shapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Piece:
-    """The plate within a frame (2, 2) [m]: the display mesh, refined until contours look smooth."""
-    points, triangles, used = cut_out(surface.points, surface.triangles, frame)
-    fine = refined(points, triangles)
-    if fine is None:
-        return points, triangles, surface.deflection(heights[None])[0][used]
-    points = np.stack([fine.x, fine.y], axis=1)
-    w = shapes.values(onto_plate(shapes.outline, points), heights[:, None])[:, 0]
-    return points, fine.triangles.astype(np.int64), w
-
-
-def cut_out(points: FloatArray, triangles: IntArray, frame: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """The points and triangles of a mesh that reach into a frame (2, 2) [m], and the rows of the points in the mesh."""
-    lowest, highest = (f(points[triangles], axis=1) for f in (np.min, np.max))
-    triangles = triangles[((highest > frame[0]) & (lowest < frame[1])).all(axis=1)]
-    used, rows = np.unique(triangles, return_inverse=True)
-    return points[used], rows.reshape(-1, 3), used
-
-
-def refined(points: FloatArray, triangles: IntArray) -> Triangulation | None:
-    """Refine triangles until contours look smooth; None where they already do."""
-    halvings = min(int(math.log(max(MAX_TRIANGLES / max(len(triangles), 1), 1), 4)), MAX_HALVINGS)
-    if not halvings:
-        return None
-    return UniformTriRefiner(Triangulation(*points.T, triangles)).refine_triangulation(subdiv=halvings)
+    places = view.actuators
+    if view.moving is None:
+        keys = mark_actuators(axes, places, frame, unit.per_si, width)
+    else:
+        size, keys = marker_size(places, frame, width) or MIN_MARKER, []
+        kinds = (view.moving, "#7fa8c9", "moving actuator"), (~view.moving, "white", "actuator at rest")
+        for some, colour, label in kinds:
+            look: dict[str, Any] = {"size": size, "colour": colour, "label": label}
+            keys += mark_actuators(axes, places[some], frame, unit.per_si, width, **look)
+    within = ((places > frame[0]) & (places < frame[1])).all(axis=1)
+    for number in np.flatnonzero(within).tolist() if view.numbered and len(places) <= MAX_NUMBERED else ():
+        put_label(axes, str(number), places[number] * unit.per_si, (0, -6), **NUMBERS)
+    return keys
 
 
 def _draw_heights(
-    figure: Figure,
-    axes: Axes,
-    points: FloatArray,
-    triangles: NDArray[np.int64],
-    w: FloatArray,
-    scale: Scale,
-    side: Literal["left", "right"],
-    lined: bool,
+    axes: Axes, relief: Relief, unit: Unit, frame: FloatArray, side: Literal["left", "right"], apart: float
 ) -> None:
-    """Draw bands of equal height with lines between them, or shades without lines, with their bar at a side."""
+    """Draw bands of equal height with lines between them, or shades without lines, with their bar at a side.
+
+    apart: how far apart actuators stand [points].
+    """
+    scale, figure = Scale.of(relief.deflection), figure_of(axes)
+    points, triangles, w = relief.within(frame)
+    x, y, w = *(points * unit.per_si).T, w * scale.unit.per_si
     if scale.colours is UPWARDS:
         w = np.maximum(w, 0.0)
     if np.ptp(w) <= FLAT * scale.highest:
@@ -154,14 +162,14 @@ def _draw_heights(
     bar: dict[str, Any] = {"ax": axes, "label": f"deflection [{scale.unit.name}]", "shrink": 0.75, "location": side}
     bar["format"] = StrMethodFormatter("{x:.6g}")
     colours: dict[str, Any] = {"cmap": scale.colours, "norm": scale.norm}
-    if not lined:
-        shades = axes.tripcolor(*points.T, triangles, w, shading="gouraud", **colours)
+    if apart < LINES_APART:
+        shades = axes.tripcolor(x, y, triangles, w, shading="gouraud", **colours)
         figure.colorbar(shades, **bar).ax.set_ylim(w.min(), w.max())
         return
     levels = np.asarray(MaxNLocator(BANDS, steps=STEPS).tick_values(w.min(), w.max()))
     labelled = np.rint(levels / (levels[1] - levels[0])) % (1 + len(levels) // LABELS) == 0  # 0 among them
-    filled = axes.tricontourf(*points.T, triangles, w, levels=levels, **colours)
-    lines = axes.tricontour(*points.T, triangles, w, levels=levels[1:-1], colors="#404040", linewidths=0.4)
+    filled = axes.tricontourf(x, y, triangles, w, levels=levels, **colours)
+    lines = axes.tricontour(x, y, triangles, w, levels=levels[1:-1], colors="#404040", linewidths=0.4)
     figure.colorbar(filled, ticks=levels[labelled], **bar).add_lines(lines)
 
 
@@ -172,11 +180,56 @@ def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> Artist:
     return axes.add_patch(Rectangle(tuple(corner), *sides, **look, label="frame of the close-up"))
 
 
-def join(figure: Figure, axes: list[Axes], unit: Unit, window: FloatArray) -> None:
+def draw_maps(
+    axes: Sequence[Axes], view: PlateView, rows: Rows, line: FloatArray, window: FloatArray | None
+) -> tuple[list[Artist], Unit]:
+    """Draw a plate and the path through points (n, 2) [m] over it, or in a window (2, 2) [m] in the second axes.
+
+    Returns keys and the unit of the last axes.
+    """
+    unit = unit_for(view.outline.box, "m")
+    keys = draw_plate(axes[0], view, unit, side="right" if window is None else "left")
+    if window is not None:
+        draw_window(axes[0], unit, window)
+        _join(axes, unit, window)
+        unit = unit_for(window, "m")
+        keys += draw_plate(axes[1], view, unit, window)
+        axes[1].yaxis.tick_right()
+        axes[1].yaxis.set_label_position("right")
+    return draw_path(axes[-1], rows, line, unit, view.outline.box) + keys, unit
+
+
+def _join(axes: Sequence[Axes], unit: Unit, window: FloatArray) -> None:
     """Join a window (2, 2) [m] on a map in the first axes to the second ones, on its right."""
     for k in (0, 1):
         place = np.array([window[1, 0], window[k, 1]]) * unit.per_si
         ends: dict[str, Any] = {"axesA": axes[0], "coordsA": "data", "axesB": axes[1], "coordsB": "axes fraction"}
-        figure.add_artist(ConnectionPatch(tuple(place), (0, k), **ends, linewidth=0.7))
-    axes[1].yaxis.tick_right()
-    axes[1].yaxis.set_label_position("right")
+        figure_of(axes[0]).add_artist(ConnectionPatch(tuple(place), (0, k), **ends, linewidth=0.7))
+
+
+def draw_path(axes: Axes, rows: Rows, line: FloatArray, unit: Unit, box: FloatArray) -> list[Artist]:
+    """Draw the path through points (n, 2) [m] on a plate with a box (2, 2) [m], or its start if it is no longer."""
+    if is_visible(line, box):
+        return draw_line(axes, rows, line, unit.per_si)
+    where = f"within {quantity_text(extent(line), 'm', 2)}" if extent(line) > NOTHING else "where it is"
+    look: dict[str, Any] = RING | PLACE | {"label": f"the part, which stays {where}"}
+    return [*axes.plot(*(rows.position[:1] * unit.per_si).T, **look)]
+
+
+def is_visible(path: FloatArray, box: FloatArray) -> bool:
+    """Whether a path (n, 2) [m] is more than a point on a plate with a box (2, 2) [m]."""
+    return extent(path) > VISIBLE * extent(box)
+
+
+def path_window(path: FloatArray, box: FloatArray, actuators: FloatArray) -> FloatArray | None:
+    """The lower left and upper right corner (2, 2) [m] of the window around a path (n, 2) [m]; None: not needed.
+
+    box: of the plate, (2, 2) m.  actuators: (N, 2) m.
+    """
+    length = extent(path)
+    if not is_visible(path, box) or length > SHORT * extent(box):
+        return None
+    longest = min(MAX_LENGTHS * length, MIN_LENGTHS * SHORT * extent(box))
+    side = float(np.clip(PITCHES * pitch(actuators), MIN_LENGTHS * length, longest))
+    middle = (path.min(axis=0) + path.max(axis=0)) / 2
+    return np.stack([middle - side / 2, middle + side / 2])

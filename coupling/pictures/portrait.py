@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from common import unit_for
-from coupling.case import Case
-from coupling.display import most_deflected, moving_heights
+from coupling.case import Case, PlateCase
+from coupling.display import most_deflected, moving_heights, onto_plate
 from coupling.drives import travel
 from coupling.margins import LOSSES, MarginCurves, Margins
-from coupling.pictures.plate import Relief, relief_of
+from coupling.pictures.plate import PlateView, Relief
+from coupling.progress import silent
+from coupling.result import Result
+from coupling.results import SavedRun
+from coupling.scene import Scene, lifts_of, platform_scene
+from coupling.summary import Summary, summary_of
 from particle import AnyDrive, Event, EventKind, Rows, Samples, SegmentDrive
-
-if TYPE_CHECKING:
-    from coupling.display import DisplaySurface
-    from coupling.result import Result
-    from coupling.scene import Scene
 
 FloatArray = NDArray[np.float64]
 
 SAMPLES, MAX_SAMPLES = 4000, 100_000
 PER_CYCLE = 24  # samples, of the fastest drive
 MAX_DRIVES = 3  # drawn; of more, those that the margins name, or the one nearest to the start
-BATCH = 64  # times whose deflections are computed together
+BATCH = 64  # times whose deflections are computed or read together
+JUMP = ("vertical_velocity", "normal_force", "friction_force")  # with velocities, where the state changes
+BETWEEN = 4  # pieces of a line from one moment to the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,21 +38,34 @@ class Portrait:
     """A run as pictures show it."""
 
     name: str
+    case: Case
+    summary: Summary
     sentence: str  # how it ended
-    origin: str  # what positions are counted from
     rows: Rows  # where states change, among others
     samples: Samples  # as many as make smooth lines
     events: Sequence[Event]
-    box: FloatArray  # (2, 2) m, around the surface as drawn
-    relief: Relief | None  # of the plate at the moment; None: there is a platform
-    moment: float  # s
-    base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
-    drives: Mapping[str, AnyDrive]  # by name, whose heights are drawn
     margins: MarginCurves
-    by_pull_off: bool  # whether the distance from coming off is over the pull-off force, not the weight
-    decisive: float  # s, when it was lost, first slipped or came nearest to slipping
-    cycles: Sequence[float]  # s, of all drives that move; none: the motion was measured
+    box: FloatArray  # (2, 2) m, around the surface as drawn
+    plate: PlateView | None  # at the moment; None: there is a platform
+    moment: float  # s
+    lifts: Sequence[AnyDrive]  # of the actuators or the platform
+    base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
     complete: bool = True  # whether the files hold the run to its end
+
+    @cached_property
+    def drives(self) -> Mapping[str, AnyDrive]:
+        """Those whose heights are drawn, by name."""
+        return chosen_drives(self.case, self.lifts, self.summary.margins)
+
+    @cached_property
+    def cycles(self) -> list[float]:
+        """The times [s] of one cycle of the drives that move, the shortest first; none: the motion was measured."""
+        return [] if self.summary.motion_fits else cycles_of([*self.lifts, *self.base])
+
+    @property
+    def decisive(self) -> float:
+        """When it was lost, first slipped or came nearest to slipping [s]."""
+        return decisive_moment(self.events, self.summary.margins)
 
     @property
     def when(self) -> str:
@@ -68,7 +84,7 @@ class Portrait:
     @property
     def where(self) -> str:
         """What positions are counted from, where it is not the plate."""
-        return f" on {self.origin}" if self.base else ""
+        return f" on {self.summary.origin}" if self.base else ""
 
     @property
     def most(self) -> str:
@@ -76,30 +92,111 @@ class Portrait:
         return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
-def portrait_of(result: Result) -> Portrait:
-    """The portrait of a run that has just ended."""
-    case, scene, trajectory, surface = result.case, result.scene, result.trajectory, result.ground
-    margins, moment = result.summary.margins, deflected_most(scene, surface, result.frames)
-    end, drives = float(trajectory.time[-1]), [*scene.lifts, *scene.base]
+def portrait_of(run: Result | SavedRun) -> Portrait:
+    """The portrait of a run that has just ended, or is read from its files."""
+    return _of_saved(run) if isinstance(run, SavedRun) else _of_result(run)
+
+
+def _of_result(result: Result) -> Portrait:
+    scene, trajectory, surface = result.scene, result.trajectory, result.ground
+    moment, end = deflected_most(scene, surface.deflection, result.frames), float(trajectory.time[-1])
+    drives = [*scene.lifts, *scene.base]
     cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
-    samples = int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))
+    samples = trajectory.at(np.linspace(0, end, int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))))
+    plate = None
+    if scene.shapes is not None:
+        shapes, heights = scene.moving_shapes, moving_heights(scene, np.array([moment]))
+
+        def exact(points: FloatArray) -> FloatArray:
+            return shapes.values(onto_plate(shapes.outline, points), heights.T)[:, 0]
+
+        relief = Relief(surface.points, surface.triangles, surface.deflection(heights)[0], exact)
+        plate = PlateView(shapes.outline, shapes.points, relief)
     return Portrait(
-        case.name,
+        result.case.name,
+        result.case,
+        result.summary,
         trajectory.sentence,
-        scene.origin,
         trajectory,
-        trajectory.at(np.linspace(0, end, samples)),
+        samples,
         trajectory.events,
-        np.stack([surface.points.min(axis=0), surface.points.max(axis=0)]),
-        _relief(scene, surface, moment),
-        moment,
-        scene.base,
-        chosen_drives(case, scene.lifts, margins),
         result.margin_curves,
-        margins.by_pull_off,
-        decisive_moment(trajectory.events, margins),
-        () if scene.fits else cycles_of(drives),
+        _box(surface.points),
+        plate,
+        moment,
+        scene.lifts,
+        scene.base,
     )
+
+
+def _of_saved(run: SavedRun) -> Portrait:
+    case, plate = run.case, None
+    every = range(0, len(run.time), BATCH)
+    fields = (run.plate_field("deflection", slice(start, start + BATCH)).astype(float) for start in every)
+    step = most_deflected(np.concatenate([np.square(w).mean(axis=1) for w in fields]))
+    if isinstance(case.plate, PlateCase):
+        relief = Relief(run.points, run.triangles, run.plate_field("deflection", step).astype(float))
+        plate = PlateView(case.plate.coarse_mesh.outline, run.actuators, relief)
+        lifts: Sequence[AnyDrive] = lifts_of(case)
+        base: Sequence[AnyDrive] = ()
+    else:
+        scene = platform_scene(case.plate, silent)
+        lifts, base = scene.lifts, scene.base
+    return Portrait(
+        run.name,
+        case,
+        summary_of(run.summary),
+        run.summary["sentence"],
+        run.rows,
+        samples_of(run),
+        run.events,
+        run.margins,
+        _box(run.points),
+        plate,
+        float(run.time[step]),
+        lifts,
+        base,
+        run.complete,
+    )
+
+
+def _box(points: FloatArray) -> FloatArray:
+    return np.stack([points.min(axis=0), points.max(axis=0)])
+
+
+def samples_of(run: SavedRun) -> Samples:
+    """All that the files know of the part, with cubics for the places in between."""
+    steps = Samples(
+        run.time,
+        run.position[:, :2],
+        run.velocity[:, :2],
+        run.velocity[:, 2],
+        run.position[:, 2],
+        run.normal_force,
+        run.friction_force,
+        run.state,
+    )
+    _, chosen = np.unique(np.concatenate([run.rows.time, steps.time]), return_index=True)
+    known = Samples(*(np.concatenate(pair)[chosen] for pair in zip(run.rows, steps, strict=True)))
+    places = np.arange((len(known.time) - 1) * BETWEEN + 1) / BETWEEN
+    before = places.astype(np.int64)
+    time = np.interp(places, np.arange(len(known.time)), known.time)
+    line = CubicHermiteSpline(known.time, known.position, known.velocity) if len(known.time) > 1 else None
+    changes = np.append(known.state[1:] != known.state[:-1], False)[before]
+    last = changes & (places % 1 == (BETWEEN - 1) / BETWEEN)
+    time[last] = np.nextafter(known.time[before[last] + 1], -np.inf)  # what jumps does so at once
+
+    def between(values: FloatArray) -> FloatArray:
+        """Values (k,) at the times in between; before the state changes they stay."""
+        column = np.interp(time, known.time, values)
+        return np.where(changes, values[before], column)
+
+    columns = {
+        "velocity": np.stack([between(values) for values in known.velocity.T], axis=1),
+        "height": np.interp(time, known.time, known.height),
+        **{name: between(getattr(known, name)) for name in JUMP},
+    }
+    return Samples(time, line(time) if line else known.position, state=known.state[before], **columns)
 
 
 def cycles_of(drives: Sequence[AnyDrive]) -> list[float]:
@@ -133,15 +230,9 @@ def decisive_moment(events: Sequence[Event], margins: Margins) -> float:
     return float((lost[-1:] or slips[:1] or nearest[:1] or [0.0])[0])
 
 
-def _relief(scene: Scene, surface: DisplaySurface, moment: float) -> Relief | None:
-    if scene.shapes is None:
-        return None
-    return relief_of(scene.moving_shapes, surface, moving_heights(scene, np.array([moment]))[0])
-
-
-def deflected_most(scene: Scene, surface: DisplaySurface, times: FloatArray) -> float:
+def deflected_most(scene: Scene, deflection: Callable[[FloatArray], FloatArray], times: FloatArray) -> float:
     """The first of times (k,) [s] at which the surface is deflected the most."""
     heights = moving_heights(scene, times)
     batches = (heights[start : start + BATCH] for start in range(0, len(times), BATCH))
-    mean_squares = [np.square(surface.deflection(batch)).mean(axis=1) for batch in batches]
+    mean_squares = [np.square(deflection(batch)).mean(axis=1) for batch in batches]
     return float(times[most_deflected(np.concatenate(mean_squares))])

@@ -6,7 +6,7 @@ The plate is drawn at one moment: the time step of the result files at which it 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,12 +16,10 @@ from matplotlib.gridspec import SubplotSpec
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
 from coupling.margins import LOSSES
-from coupling.pictures.events import MARKS, draw_events
 from coupling.pictures.figure import map_axes, put_keys, put_title, save_picture
-from coupling.pictures.path import draw_path, is_visible, path_window
-from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
+from coupling.pictures.plate import AXES_WIDTH, draw_maps, draw_path, draw_plate, path_window
 from coupling.pictures.portrait import Portrait, portrait_of
-from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
+from coupling.pictures.time import MARKS, Curves, Span, curves_of, draw_events, draw_over_time
 from coupling.result import Result
 from particle import HALO, shade_keys
 
@@ -40,23 +38,20 @@ def draw_run(result: Result, path: Path) -> Path:
 @draw.register(Result)
 def draw_result(result: Result, axes: Axes | None = None) -> Figure:
     """Draw a run; with axes in m, only the path over its surface, into these."""
-    portrait, trajectory = portrait_of(result), result.trajectory
+    portrait = portrait_of(result)
     if axes is None:
         drawing = Drawing()
         compose(drawing, portrait)
         return drawing
-    figure, unit = figure_of(axes), Unit("m", 1.0)
-    draw_surface(figure, axes, portrait, unit)
-    line = portrait.samples.position
-    draw_path(axes, trajectory, line, unit, is_visible(line, portrait.box))
+    draw_way(axes, portrait, Unit("m", 1.0))
     label_places(axes)
-    return figure
+    return figure_of(axes)
 
 
 def compose(figure: Figure, portrait: Portrait) -> None:
     """Draw the run into an empty figure: maps, and below them what happens over time."""
-    box, rows, line, relief = portrait.box, portrait.rows, portrait.samples.position, portrait.relief
-    window = path_window(line, box, relief.actuators) if relief else None
+    box, rows, line, plate = portrait.box, portrait.rows, portrait.samples.position, portrait.plate
+    window = path_window(line, box, plate.actuators) if plate else None
     curves = curves_of(portrait)
     width, height = np.ptp(box, axis=0)
     columns = [float(np.clip(width / height, MIN_WIDTH, 1.0)), *([] if window is None else [1.0])]
@@ -66,19 +61,15 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     grid = figure.add_gridspec(2, 1, height_ratios=[PANEL, below])
     maps = grid[0].subgridspec(1, len(columns), width_ratios=columns)
     axes = [figure.add_subplot(maps[k]) for k in range(len(columns))]
-    units = [unit_for(points, "m") for points in (box, window) if points is not None]
-    for one, unit in zip(axes, units, strict=True):
-        map_axes(one, unit, portrait.where)
-    if relief:
+    if plate:
         axes[0].set_title(f"The plate at {portrait.when}, {portrait.most}", fontsize=10)
-    keys = draw_surface(figure, axes[0], portrait, units[0], side="right" if window is None else "left")
-    if relief and window is not None:
+        keys, unit = draw_maps(axes, plate, rows, line, window)
+    else:
+        unit = unit_for(box, "m")
+        keys = draw_way(axes[0], portrait, unit)
+    if window is not None:
         axes[1].set_title(f"Around the path, also at {portrait.when}", fontsize=10)
-        draw_window(axes[0], units[0], window)
-        join(figure, axes, units[0], window)
-        keys += draw_plate(figure, axes[1], relief, units[1], window)
-    keys = draw_path(axes[-1], rows, line, units[-1], is_visible(line, box)) + keys
-    _draw_loss(axes[-1], portrait, units[-1])
+    _draw_loss(axes[-1], portrait, unit)
     spans = _spans(portrait)
     rest = grid[1].subgridspec(len(curves) + 1, len(spans), height_ratios=[STRIP, *[ROW] * len(curves)])
     for k, span in enumerate(spans):
@@ -150,19 +141,15 @@ def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:
             )
 
 
-def draw_surface(
-    figure: Figure,
-    axes: Axes,
-    portrait: Portrait,
-    unit: Unit,
-    side: Literal["left", "right"] = "right",
-    width: float = AXES_WIDTH,
-) -> list[Artist]:
-    """Draw the whole plate, or the extent of a platform, into axes so wide [points]; return keys."""
-    if portrait.relief:
-        return draw_plate(figure, axes, portrait.relief, unit, portrait.relief.frame, side, width)
-    (left, bottom), (right, top) = portrait.box * unit.per_si
-    axes.set_xlim(left, right)
-    axes.set_ylim(bottom, top)
-    axes.grid(alpha=0.3)
-    return []
+def draw_way(axes: Axes, portrait: Portrait, unit: Unit, width: float = AXES_WIDTH) -> list[Artist]:
+    """Draw the path over the whole plate, or the extent of a platform, into axes so wide [points]; return keys."""
+    line, keys = portrait.samples.position, []
+    if portrait.plate:
+        keys = draw_plate(axes, portrait.plate, unit, width=width)
+    else:
+        map_axes(axes, unit, portrait.where)
+        (left, bottom), (right, top) = portrait.box * unit.per_si
+        axes.set_xlim(left, right)
+        axes.set_ylim(bottom, top)
+        axes.grid(alpha=0.3)
+    return draw_path(axes, portrait.rows, line, unit, portrait.box) + keys

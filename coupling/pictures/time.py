@@ -1,4 +1,4 @@
-"""Curves over time in the picture of a run, with shades where the part is stuck or in flight."""
+"""Curves over time in the picture of a run, with shades for rest and flight, and its events as marks."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from textwrap import fill
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from common import NOTHING, Unit, quantity_text, unit_for
 from coupling.pictures.figure import plain_ticks
 from coupling.pictures.portrait import Portrait
-from particle import PATH_COLOUR, Rows, shade
+from particle import PATH_COLOUR, EventKind, Rows, shade
 
 FloatArray = NDArray[np.float64]
 Span = tuple[float, float]
@@ -56,7 +57,7 @@ def curves_of(portrait: Portrait) -> list[Curves]:
     if samples.friction_force.any():
         curves.append(Curves("friction", "N", {"": samples.friction_force}, times))
     moving = velocities_of(portrait)
-    speed = f"speed {'on ' + portrait.origin if portrait.base else 'in the plane'}"
+    speed = f"speed {'on ' + portrait.summary.origin if portrait.base else 'in the plane'}"
     curves += moving or [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)}, times)]
     return [one for one in curves if one is not None]
 
@@ -74,7 +75,7 @@ def strokes_of(portrait: Portrait) -> Curves | None:
 def margins_over_time(portrait: Portrait) -> Curves | None:
     """The pull over what friction holds and, on a scale of its own, the distance from pull-off; None: there is none."""
     times, slip, contact = portrait.margins
-    unit = "pull-off force" if portrait.by_pull_off else "weight"
+    unit = "pull-off force" if portrait.summary.margins.by_pull_off else "weight"
     off = Curves("distance from coming off", unit, {"distance from coming off": contact}, times, marked=0.0)
     has_slip, has_contact = np.isfinite(slip).any(), np.isfinite(contact).any()
     if not has_slip:
@@ -222,3 +223,50 @@ def limits(values: FloatArray) -> tuple[float, float]:
     if high - low < NOTHING:
         high = 1.0
     return low - MARGIN * (high - low), high + MARGIN * (high - low)
+
+
+class Mark(NamedTuple):
+    """How an event is drawn and named."""
+
+    marker: str
+    colour: str
+    text: str
+    afterwards: str = ""  # of a part that it lost
+
+
+MARKS: Final[dict[EventKind, Mark]] = {
+    EventKind.SLIPS: Mark(">", "black", "slips"),
+    EventKind.STOPS: Mark("s", "black", "stops"),
+    EventKind.REVERSES: Mark("D", "white", "turns back"),
+    EventKind.DETACHES: Mark("*", "white", "comes off", "came off"),
+    EventKind.LANDS: Mark("v", "white", "lands"),
+    EventKind.LEAVES_PLATE: Mark("X", "white", "leaves the plate", "left the plate"),
+    EventKind.OVERLOADS: Mark("P", "white", "overload", "overloaded"),
+}
+APART = 3.5  # points: nearer to each other, marks of events merge
+OFTEN = (EventKind.SLIPS, EventKind.STOPS)  # where shades begin and end in any case
+
+
+def draw_events(
+    axes: Axes, portrait: Portrait, per_second: float, width: float, span: tuple[float, float] | None = None
+) -> list[Artist]:
+    """Draw a strip of states with a mark for each event, or for rare ones where all would merge; return keys.
+
+    width: of the axes [points].  span: of time that is shown [s]; None: all.
+    """
+    shade(axes, portrait.rows, per_second)
+    axes.set_yticks([])
+    axes.set_ylim(0, 1)
+    axes.tick_params(bottom=False, labelbottom=False)
+    begin, end = span or (0.0, float(portrait.rows.time[-1]))
+    events = [event for event in portrait.events if begin <= event.time <= end]
+    keys: list[Artist] = []
+    for kind, (marker, colour, text, _) in MARKS.items():
+        times = [event.time for event in events if event.kind is kind]
+        if not times or (kind in OFTEN and len(events) > width / APART):
+            continue
+        look: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "linestyle": ""}
+        look |= {"markersize": APART, "markeredgewidth": 0.6}
+        axes.plot(np.array(times) * per_second, np.full(len(times), 0.5), **look, clip_on=False)
+        keys.append(Line2D([], [], **look, label=text))
+    return keys

@@ -15,7 +15,6 @@ INSIDE = {  # scripts that measure or describe parts of rooms, which are not pub
     "benchmarks/measured_motion.py",
     "benchmarks/results.py",
     "docs/extensions/fields.py",
-    "docs/theory_pictures.py",
 }
 
 

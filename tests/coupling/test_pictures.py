@@ -1,6 +1,7 @@
 """The picture of a run: when there is a window, what is marked, what the axes show; and nothing that is not there."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,12 +12,21 @@ from matplotlib.lines import Line2D
 from common import Unit, quantity_text, range_text, unit_for
 from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
-from coupling.display.surface import DisplaySurface, deflections, most_deflected
+from coupling.display.surface import deflections, most_deflected
 from coupling.drives import build_drives
 from coupling.margins import Margin, Margins
 from coupling.pictures.figure import put_keys
-from coupling.pictures.path import MAX_LENGTHS, MIN_LENGTHS, path_window
-from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
+from coupling.pictures.plate import (
+    BOTH_WAYS,
+    MAX_LENGTHS,
+    MIN_LENGTHS,
+    UPWARDS,
+    PlateView,
+    Relief,
+    Scale,
+    draw_plate,
+    path_window,
+)
 from coupling.pictures.portrait import chosen_drives, decisive_moment, portrait_of
 from coupling.pictures.run import compose
 from coupling.pictures.time import Curves, draw_over_time, limits, margins_over_time, strokes_of
@@ -255,6 +265,21 @@ def test_a_curve_is_followed_while_two_points_lie_between_its_turns():
         assert (len(followed), len(edged)) == (1 - bands, bands)
 
 
+def test_steps_of_a_band_are_whole_cycles_so_that_a_steady_motion_has_a_level_band():
+    axes = Figure(figsize=(10.0, 2.0)).add_axes((0.0, 0.0, 1.0, 1.0))  # 720 points
+    rows = Samples(*(np.zeros(2) for _ in Samples._fields))._replace(time=np.array([0.0, 1.0]))
+    times = np.linspace(0, 1, 40_001)
+    for cycles, text in (((1 / 190,), "each cycle"), ((1 / 950, 1 / 190, 0.4), "each cycle of the slowest drive")):
+        axes.clear()
+        values = sum(np.sin(2 * np.pi * times / cycle) for cycle in cycles if cycle < 0.1)
+        (key,) = draw_over_time(axes, rows, Curves("speed", "m/s", {"": values}, times), Unit("s", 1.0), cycles=cycles)
+        assert key.get_label() == f"lowest to highest in {text}, 5.26 ms"
+        band = max((path.vertices for one in axes.collections for path in one.get_paths()), key=len)
+        assert np.diff(np.unique(band[:, 0]))[:-1] == pytest.approx(1 / 190)
+        top = band[band[:, 1] > 0, 1]
+        assert np.ptp(top) < 0.02 * top.max()
+
+
 def test_of_many_actuators_those_are_drawn_that_the_margins_name():
     case = plate_case()
     many = case.model_copy(update={"actuators": case.actuators * 4})
@@ -267,31 +292,39 @@ def test_of_many_actuators_those_are_drawn_that_the_margins_name():
     assert decisive_moment([], margins) == 1e-3
 
 
+HEIGHTS = np.array([2e-6, -1e-6])
+
+
 def small_plate():
+    """The shapes of its actuators, and what pictures show of it."""
     plate = Plate(disc(3e-4, 1e-4), PlateSection(169e9, 0.3, 2e-5, 2330.0))
     shapes = plate.influence([(-1e-4, 0.0), (1e-4, 0.0)])
     points, triangles = display_mesh(plate.mesh, shapes.points)
-    return shapes, DisplaySurface(points, triangles, deflections(shapes, points))
+    relief = Relief(
+        points, triangles, deflections(shapes, points)(HEIGHTS[None])[0], lambda xy: shapes.evaluate(xy, HEIGHTS)[0]
+    )
+    return shapes, PlateView(shapes.outline, shapes.points, relief)
 
 
 def test_the_fine_piece_covers_the_plate_and_is_that_of_the_shapes():
-    shapes, ground = small_plate()
-    heights = np.array([2e-6, -1e-6])
-    xy, cells, w = fine_piece(shapes, ground, heights, shapes.outline.box)
-    assert len(cells) >= 4 * len(ground.triangles)
-    inside = np.hypot(*xy.T) < 2.9e-4
-    assert w[inside] == pytest.approx(shapes.evaluate(xy[inside], heights)[0], abs=1e-15)
+    shapes, view = small_plate()
+    relief, frame = view.relief, view.outline.box
+    for piece, error in ((relief, 1e-15), (replace(relief, exact=None), 1e-8)):
+        xy, cells, w = piece.within(frame)
+        assert len(cells) >= 4 * len(relief.triangles)
+        inside = np.hypot(*xy.T) < 2.9e-4
+        assert w[inside] == pytest.approx(shapes.evaluate(xy[inside], HEIGHTS)[0], abs=error)
     a, b, c = np.moveaxis(xy[cells], 1, 0)
     (p, q), (r, s) = (b - a).T, (c - a).T
     assert np.abs(p * s - q * r).sum() / 2 == pytest.approx(np.pi * 9e-8, rel=3e-3)
     window = np.array([[0.0, 0.0], [5e-5, 5e-5]])
-    xy, cells, _ = fine_piece(shapes, ground, heights, window)
+    xy, cells, _ = relief.within(window)
     longest = np.hypot(*(xy[cells] - xy[np.roll(cells, 1, axis=1)]).reshape(-1, 2).T).max()
     assert longest < 5e-5 / 25 and xy.min() > -5e-5 and xy.max() < 1e-4
     figure = Figure()
-    axes, relief, unit = list(figure.subplots(1, 2)), relief_of(shapes, ground, heights), unit_for(window, "m")
-    keys = draw_plate(figure, axes[0], relief, unit, relief.frame)
-    assert not draw_plate(figure, axes[1], relief, unit, window)  # both stand outside of the window
+    axes, unit = list(figure.subplots(1, 2)), unit_for(window, "m")
+    keys = draw_plate(axes[0], view, unit)
+    assert not draw_plate(axes[1], view, unit, window)  # both stand outside of the window
     FigureCanvasAgg(figure).draw()
     assert [key.get_label() for key in keys] == ["actuator"]
     assert np.transpose([axes[1].get_xlim(), axes[1].get_ylim()]) == pytest.approx(window * 1e6)
@@ -300,12 +333,11 @@ def test_the_fine_piece_covers_the_plate_and_is_that_of_the_shapes():
 
 
 def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heights_do(monkeypatch):
-    shapes, ground = small_plate()
+    _, view = small_plate()
     monkeypatch.setattr(plate_pictures, "FEW", 1)
     figure = Figure()
-    relief = relief_of(shapes, ground, np.array([2e-6, -1e-6]))
     # So narrow that the lines would merge, as would the markers.
-    keys = draw_plate(figure, figure.subplots(), relief, unit_for(relief.box, "m"), relief.frame, width=1.0)
+    keys = draw_plate(figure.subplots(), view, unit_for(view.outline.box, "m"), width=1.0)
     FigureCanvasAgg(figure).draw()
     low, high = figure.axes[1].get_ylim()
     assert -1.3 < low <= -1 + 1e-12 and 2 - 1e-12 <= high < 2.5

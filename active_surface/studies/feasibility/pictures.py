@@ -16,10 +16,8 @@ from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import Feasible
 from active_surface.studies.feasibility.chart_picture import draw_chart
 from active_surface.studies.feasibility.result import Feasibility
-from common import Drawing, draw, draw_rim, quantity_text, unit_for
-from coupling.pictures import map_axes, put_title
-from fem_plate import frame_around, mark_actuators
-from meshes import rim_curves
+from common import Drawing, draw, quantity_text, unit_for
+from coupling.pictures import PlateView, draw_plate, put_title
 
 LOST, LINE, PALE = "#c8371b", "#40719c", "#8a8a8a"
 CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
@@ -48,27 +46,21 @@ def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | Non
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility, areas: Feasible) -> None:
-    box = feasibility.outline.box
-    unit = unit_for(box, "m")
+    unit = unit_for(feasibility.outline.box, "m")
     x, y, share = _grid(areas, np.where(areas.own.lost, np.nan, 100 * areas.own.shares))
     half = areas.spacing / 2
     edges = [np.append(side - half, side[-1] + half) * unit.per_si for side in (x, y)]
-    held = np.ma.masked_where(~(share > 0), share)
-    mesh = axes.pcolormesh(*edges, held.T, cmap="viridis", vmin=0)
+    slipping = np.ma.masked_where(~(share > 0), share)
+    mesh = axes.pcolormesh(*edges, slipping.T, cmap="viridis", vmin=0)
     lost = _grid(areas, np.where(areas.own.lost, 1.0, np.nan))[2]
     axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([LOST]), vmin=0, vmax=1)
-    if held.count():
+    if slipping.count():
         figure.colorbar(mesh, ax=axes, label="share of the time in which the part slips [%]", shrink=0.8)
-    draw_rim(axes, rim_curves(feasibility.outline), unit.per_si)
     keys: list[Artist] = [Patch(facecolor="white", edgecolor="black", label="the part stays at rest")]
     if areas.own.lost.any():
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
-    keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
-    map_axes(axes, unit)
+    keys += draw_plate(axes, PlateView(feasibility.outline, feasibility.actuators), unit)
     axes.set_title(f"any start, at the case's drives, {quantity_text(areas.window, 's', 4)}", fontsize=10)
-    low, high = frame_around(box) * unit.per_si
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
 
 

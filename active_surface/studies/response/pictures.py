@@ -14,10 +14,8 @@ from matplotlib.ticker import LogLocator
 from active_surface.arrays import FloatArray
 from active_surface.studies.response.functions import ComplexArray
 from active_surface.studies.response.response import FrequencyResponse
-from common import Drawing, draw, draw_rim, unit_for
-from coupling.pictures import clear_labels, map_axes, put_keys, put_label, put_title
-from fem_plate import frame_around, mark_actuators
-from meshes import rim_curves
+from common import Drawing, draw, unit_for
+from coupling.pictures import PlateView, clear_labels, draw_plate, put_keys, put_label, put_title
 
 MAX_CURVES: Final = 10
 MARK: Final[dict[str, Any]] = {"color": "#404040", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}  # of a resonance
@@ -92,19 +90,10 @@ def _label(response: FrequencyResponse, point: int, actuator: int) -> str:
 
 
 def _draw_places(axes: Axes, response: FrequencyResponse) -> None:
-    box = response.outline.box
-    unit = unit_for(box, "m")
-    draw_rim(axes, rim_curves(response.outline), unit.per_si)
-    mark_actuators(axes, response.actuators, frame_around(box), unit.per_si)
-    few = len(response.actuators) <= MAX_CURVES
-    for number, place in enumerate(response.actuators if few else ()):
-        put_label(axes, str(number), place * unit.per_si, (0, 7), fontsize=8)
+    unit, few = unit_for(response.outline.box, "m"), len(response.actuators) <= MAX_CURVES
+    draw_plate(axes, PlateView(response.outline, response.actuators, numbered=few), unit)
     axes.plot(*(response.points * unit.per_si).T, "o", color="black", markersize=5)
     for number, place in enumerate(response.points[:MAX_CURVES]):
         text = "point" if len(response.points) == 1 else f"point {number}"
         put_label(axes, text, place * unit.per_si, (0, -7), fontsize=8)
     axes.set_title("The actuators by their numbers" if few else "The actuators", fontsize=10)
-    map_axes(axes, unit)
-    low, high = frame_around(box) * unit.per_si
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])

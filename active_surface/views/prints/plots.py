@@ -20,8 +20,8 @@ from active_surface.studies.pictures import (
     value_panel,
 )
 from active_surface.views.prints.run_pictures import run_pictures
-from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import FORMATS, WIDTH, Picture, drawn, save
+from coupling.pictures import portrait_of
 from coupling.results import instead, is_run, read_run
 
 OUTCOME = "outcome"
@@ -94,7 +94,7 @@ def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tu
         if names:
             raise ValueError(f"Input {' and '.join(names)} of plot must be given for a sweep only; {path} is of a run")
         run = read_run(path)
-        return run.name, run_pictures(portrait_of_saved(run)), run.complete
+        return run.name, run_pictures(portrait_of(run)), run.complete
     file = path if path.is_file() else path.with_name(path.name + ENDING)
     if key_of(file) is None:
         required = "must be a file that `active-surface run` or `active-surface sweep` left"

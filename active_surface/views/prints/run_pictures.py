@@ -17,10 +17,8 @@ from coupling.pictures import (
     draw_over_time,
     draw_path,
     draw_plate,
-    draw_surface,
+    draw_way,
     draw_window,
-    is_visible,
-    map_axes,
     margins_over_time,
     path_window,
     put_keys,
@@ -36,9 +34,9 @@ FAR = 3.0  # times its extent a path is from the origin: then displacements are 
 
 def run_pictures(portrait: Portrait) -> list[Picture]:
     """The pictures that tell of a run; that around its path only where the path is short beside the plate."""
-    line, relief = portrait.samples.position, portrait.relief
-    window = path_window(line, portrait.box, relief.actuators) if relief else None
-    surface = f"the plate at {portrait.when}, {portrait.most}" if relief else portrait.origin
+    line, plate = portrait.samples.position, portrait.plate
+    window = path_window(line, portrait.box, plate.actuators) if plate else None
+    surface = f"the plate at {portrait.when}, {portrait.most}" if plate else portrait.summary.origin
     pictures = [
         Picture(
             "path", f"The path over {surface}. {portrait.sentence}", lambda figure: _draw_all(figure, portrait, window)
@@ -53,26 +51,22 @@ def run_pictures(portrait: Portrait) -> list[Picture]:
 
 
 def _draw_all(figure: Figure, portrait: Portrait, window: FloatArray | None) -> None:
-    unit = unit_for(portrait.box, "m")
-    axes = figure.add_subplot()
-    map_axes(axes, unit, portrait.where)
-    keys = draw_surface(figure, axes, portrait, unit, width=SHARE * 72 * figure.get_figwidth())
-    line = portrait.samples.position
-    if window is None:
-        keys = draw_path(axes, portrait.rows, line, unit, is_visible(line, portrait.box)) + keys
+    unit, axes, width = unit_for(portrait.box, "m"), figure.add_subplot(), SHARE * 72 * figure.get_figwidth()
+    if window is None or portrait.plate is None:
+        keys = draw_way(axes, portrait, unit, width)
     else:  # whose picture has start and end, which would cover the frame here
-        keys += axes.plot(*(line * unit.per_si).T, color=PATH_COLOUR, linewidth=1.2, label="path")
+        keys = draw_plate(axes, portrait.plate, unit, width=width)
+        line = portrait.samples.position * unit.per_si
+        keys += axes.plot(*line.T, color=PATH_COLOUR, linewidth=1.2, label="path")
         keys.append(draw_window(axes, unit, window))
     put_keys(figure, keys)
 
 
 def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None:
-    unit = unit_for(window, "m")
-    axes = figure.add_subplot()
-    map_axes(axes, unit, portrait.where)
-    assert portrait.relief
-    keys = draw_plate(figure, axes, portrait.relief, unit, window, width=SHARE * 72 * figure.get_figwidth())
-    put_keys(figure, draw_path(axes, portrait.rows, portrait.samples.position, unit, True) + keys)
+    unit, axes = unit_for(window, "m"), figure.add_subplot()
+    assert portrait.plate
+    keys = draw_plate(axes, portrait.plate, unit, window, width=SHARE * 72 * figure.get_figwidth())
+    put_keys(figure, draw_path(axes, portrait.rows, portrait.samples.position, unit, portrait.box) + keys)
 
 
 def courses(portrait: Portrait) -> list[Curves]:

@@ -16,11 +16,10 @@ from active_surface.studies.pictures.findings import read_findings
 from active_surface.studies.pictures.selection import Selection
 from active_surface.views.prints.plots import plot, sweep_pictures
 from active_surface.views.prints.run_pictures import courses, run_pictures
-from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import MM, drawn
 from coupling import read_case, run_case
-from coupling.pictures.events import MARKS
 from coupling.pictures.portrait import portrait_of
+from coupling.pictures.time import MARKS
 from coupling.results.saved import read_run
 from particle import EventKind
 
@@ -86,7 +85,7 @@ SOME_SLOW += [pytest.param(*one, marks=pytest.mark.slow) for one in (("plate", 1
 @pytest.mark.parametrize(("name", "width"), SOME_SLOW)
 def test_pictures_of_a_run_can_be_read(tmp_path, name, width):
     result = ran(tmp_path, RUNS[name], "2 ms")
-    pictures = run_pictures(portrait_of_saved(read_run(tmp_path / "case")))
+    pictures = run_pictures(portrait_of(read_run(tmp_path / "case")))
     assert [picture.name for picture in pictures if picture.name != "closeup"] == ["path", "time"]
     assert result.summary.sentence in pictures[0].caption
     for picture in pictures:
@@ -97,7 +96,7 @@ def test_pictures_of_a_run_can_be_read(tmp_path, name, width):
 @pytest.mark.compiled
 def test_a_saved_run_looks_as_the_run_itself(folder):
     result = ran(folder, duration="2 ms")
-    saved = portrait_of_saved(read_run(folder / "case"))
+    saved = portrait_of(read_run(folder / "case"))
     found = portrait_of(result)
     assert saved.decisive == found.decisive and list(saved.drives) == list(found.drives)
     for one, other in zip(saved.margins, found.margins, strict=True):
@@ -108,8 +107,7 @@ def test_a_saved_run_looks_as_the_run_itself(folder):
     largest = np.ptp(truth.position, axis=0).max()
     assert np.abs(saved.samples.position - truth.position).max() < 1e-3 * largest
     assert np.abs(saved.samples.height - truth.height).max() < 0.02 * truth.height.max()
-    frame = saved.relief.frame
-    points, triangles, w = saved.relief.within(frame)
+    points, triangles, w = saved.plate.relief.within(saved.plate.frame)
     exact = result.shapes.values(points[::10] * (1 - 1e-9), result.scene.lifts and heights(result, saved.moment))
     assert len(triangles) > 10_000 and np.abs(w[::10] - exact[:, 0]).max() < 0.01 * exact.max()
     for one, other in zip(courses(saved), courses(found), strict=True):
@@ -125,7 +123,7 @@ def heights(result, moment):
 def test_what_jumps_is_drawn_with_jumps(tmp_path):
     ran(tmp_path, COMES_OFF.replace("[run]", '[run]\nafter_detachment = "fly"'), "2 ms")
     run = read_run(tmp_path / "case")
-    samples = portrait_of_saved(run).samples
+    samples = portrait_of(run).samples
     lands = [event.time for event in run.events if event.kind is EventKind.LANDS]
     assert lands and (np.diff(samples.time) >= 0).all()
     for time in lands:
@@ -150,7 +148,7 @@ def test_a_picture_of_a_partial_run_says_so(folder, tmp_path):
 @pytest.mark.compiled
 def test_events_are_marked_where_they_happen(folder):
     run = read_run(folder / "case")
-    figure = drawn(run_pictures(portrait_of_saved(run))[-1])
+    figure = drawn(run_pictures(portrait_of(run))[-1])
     marked = {line.get_marker(): sorted(line.get_xdata()) for line in figure.axes[0].get_lines()}
     assert run.events
     for kind, (marker, *_) in MARKS.items():
