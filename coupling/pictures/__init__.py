@@ -23,13 +23,4 @@ from coupling.pictures.plate import (
 )
 from coupling.pictures.portrait import Portrait, chosen_drives, portrait_of
 from coupling.pictures.run import draw_run, draw_way
-from coupling.pictures.time import (
-    MARKS,
-    Curves,
-    curves_of,
-    draw_events,
-    draw_over_time,
-    margins_over_time,
-    strokes_of,
-    velocities_of,
-)
+from coupling.pictures.time import MARKS, all_curves_of, curves_of, draw_events, draw_over_time

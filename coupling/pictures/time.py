@@ -34,6 +34,7 @@ LOOKS: Final[tuple[tuple[str, Any], ...]] = (
 NARROW = 4.0  # inches: a figure with two keys a line
 LETTERS = 18  # of a line of a label
 CROWDED, STEP = 2.0, 2.5  # points: between turns of a curve that becomes a band; the least width of a step of this
+FAR = 3.0  # times its extent a path is from the origin: then displacements are shown
 THIN = 0.06  # of the values' range: a band that is mostly lower is drawn as its line
 MANY, BAND = 20, 0.35  # cycles of a drive whose steps are whole cycles; how opaque a band is
 
@@ -52,13 +53,29 @@ class Curves:
 
 def curves_of(portrait: Portrait) -> list[Curves]:
     """What explains the motion, from the top: strokes, margins, friction, and speed or a platform's velocities."""
-    samples, times = portrait.samples, portrait.samples.time
-    curves = [strokes_of(portrait), margins_over_time(portrait)]
-    if samples.friction_force.any():
-        curves.append(Curves("friction", "N", {"": samples.friction_force}, times))
-    moving = velocities_of(portrait)
+    samples = portrait.samples
+    friction = Curves("friction", "N", {"": samples.friction_force}, samples.time)
     speed = f"speed {'on ' + portrait.summary.origin if portrait.base else 'in the plane'}"
-    curves += moving or [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)}, times)]
+    curves = [strokes_of(portrait), margins_over_time(portrait), friction if samples.friction_force.any() else None]
+    curves += velocities_of(portrait) or [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)}, samples.time)]
+    return [one for one in curves if one is not None]
+
+
+def all_curves_of(portrait: Portrait) -> list[Curves]:
+    """All that is known over time: where the part is and how fast, too, and the load."""
+    samples, times = portrait.samples, portrait.samples.time
+    way, relative = samples.position - samples.position[0], "relative " if portrait.base else ""
+    moved = np.abs(samples.position).max() > FAR * max(float(np.ptp(samples.position, axis=0).max()), NOTHING)
+    vectors = (
+        (relative + ("displacement" if moved else "position"), "m", way if moved else samples.position),
+        (f"{relative}velocity", "m/s", samples.velocity),
+    )
+    position, velocity = (
+        Curves(label, si, dict(zip(("along x", "along y"), rows.T, strict=True)), times) for label, si, rows in vectors
+    )
+    forces = {"normal load": samples.normal_force, "friction": samples.friction_force}
+    curves = [position, strokes_of(portrait), velocity, *velocities_of(portrait), margins_over_time(portrait)]
+    curves += [Curves(label, "N", {"": force}, times) for label, force in forces.items()]
     return [one for one in curves if one is not None]
 
 

@@ -1,16 +1,22 @@
-"""Curves of a sweep over one axis: how far parts went, and what became of them."""
+"""Curves of a sweep over one axis: how far parts went, what became of them, or where a condition begins to hold."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
+from active_surface.arrays import BoolArray
 from active_surface.studies.pictures.heat import COLOURS, add_key, edges, frame
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.record import OUTCOMES
+from active_surface.studies.threshold import lowest
 from common import legend_below
 
 PERCENTILES = (10, 90)
+BEGINS, BEFORE = "#c8371b", "#f3c9bd"
 
 
 def draw_curve(axes: Axes, selection: Selection) -> None:
@@ -51,3 +57,26 @@ def draw_shares(axes: Axes, selection: Selection) -> None:
     axes.set_ylim(0, 100)
     axes.set_xlim(borders[0], borders[-1])
     add_key(axes, selection.outcome, OUTCOMES, COLOURS)
+
+
+def draw_threshold(axes: Axes, selection: Selection, holds: BoolArray, condition: str) -> None:
+    """Draw the lowest value of the second axis at which a condition holds over the first axis."""
+    across, up = selection.axes
+    frame(axes, across, up)
+    order = np.argsort(across.drawn)
+    where = across.drawn[order]
+    begins, before = (values[order] for values in lowest(up.drawn, holds))
+    axes.fill_between(where, before, begins, color=BEFORE, linewidth=0, label=f"down to the next lower {up.axis.name}")
+    axes.plot(where, begins, ".-", color=BEGINS, linewidth=1.0, label=f"lowest {up.axis.name} with {condition}")
+    from_first = np.isfinite(begins) & np.isnan(before)
+    if from_first.any():
+        marks: dict[str, Any] = {"marker": "v", "markerfacecolor": "white", "markeredgecolor": BEGINS, "linestyle": ""}
+        axes.add_line(Line2D(where[from_first], begins[from_first], label="there or below", **marks))
+    limits = edges(across), edges(up)
+    axes.set_xlim(limits[0].min(), limits[0].max())
+    axes.set_ylim(limits[1].min(), limits[1].max())
+    axes.grid(alpha=0.3)
+    if np.isnan(begins).all():
+        axes.text(0.5, 0.5, f"{condition} nowhere", transform=axes.transAxes, ha="center", parse_math=False)
+    else:
+        legend_below(axes)

@@ -10,12 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from active_surface.studies.pictures.basins import NEARNESS, Basins, is_over_starts
-from active_surface.studies.pictures.curve import draw_curve, draw_shares
+from active_surface.studies.pictures.curve import draw_curve, draw_shares, draw_threshold
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.heat import OUTCOME, draw_outcome, draw_value
 from active_surface.studies.pictures.scatter import draw_ends, draw_outcomes, draw_points
 from active_surface.studies.pictures.selection import Selection
-from active_surface.studies.pictures.threshold_curve import draw_threshold
 from active_surface.studies.study import Study
 from common import Drawing
 from coupling.pictures import put_title, save_picture

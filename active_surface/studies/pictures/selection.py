@@ -106,21 +106,17 @@ class Selection:
         column = column or DISTANCE
         _check_names(findings, x, y, column)
         axes = _chosen(findings, x, y)
-        scattered = findings.scattered
-        picked: dict[str, Any] = {"point": slice(0, MAX_POINTS)} if scattered else {}
-        fixed = {}
-        for axis in () if scattered else findings.axes:
-            if axis in axes and axis.field.kind != "text":
-                picked[axis.name] = np.argsort(axis.values)
-            elif axis not in axes:
-                order = np.argsort(axis.values) if axis.field.kind != "text" else np.arange(len(axis.values))
-                picked[axis.name] = int(order[len(order) // 2])
-                scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]]))
-                fixed[axis.name] = scale.texts[0] if scale.texts else _fixed(scale, axis.values)
-        outcome = findings.dataset["outcome"]
+        scattered, outcome, fixed = findings.scattered, findings.dataset["outcome"], {}
         numbers = outcome.copy(data=np.arange(outcome.size).reshape(outcome.shape))
-        part = findings.dataset.assign({NUMBER: numbers}).isel(picked)
-        if not scattered:
+        part = findings.dataset.assign({NUMBER: numbers})
+        if scattered:
+            part = part.isel(point=slice(0, MAX_POINTS))
+        else:
+            part = part.sortby([axis.name for axis in findings.axes if axis.field.kind != "text"])
+            for axis in (one for one in findings.axes if one not in axes):
+                part = part.isel({axis.name: len(axis.values) // 2})
+                scale = Scale.of(axis, np.atleast_1d(part[axis.name].values))
+                fixed[axis.name] = scale.texts[0] if scale.texts else _fixed(scale, axis.values)
             part = part.transpose(*(axis.name for axis in axes), ...)
         arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y", NUMBER)}
         if findings.repeats == 1:

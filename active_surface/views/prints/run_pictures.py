@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from active_surface.arrays import FloatArray
 from active_surface.views.prints.sheet import MM, Picture
-from common import NOTHING, unit_for
+from common import unit_for
 from coupling.pictures import (
-    Curves,
     Portrait,
+    all_curves_of,
     draw_events,
     draw_over_time,
     draw_path,
     draw_plate,
     draw_way,
     draw_window,
-    margins_over_time,
     path_window,
     put_keys,
-    strokes_of,
-    velocities_of,
 )
 from particle import PATH_COLOUR, State, shade_keys, stretches
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
-FAR = 3.0  # times its extent a path is from the origin: then displacements are shown
 
 
 def run_pictures(portrait: Portrait) -> list[Picture]:
@@ -45,7 +40,7 @@ def run_pictures(portrait: Portrait) -> list[Picture]:
     if window is not None:
         text = f"The path and what is around it: {surface}."
         pictures.append(Picture("closeup", text, lambda figure: _draw_window(figure, portrait, window)))
-    names = ", ".join(curves.label for curves in courses(portrait))
+    names = ", ".join(curves.label for curves in all_curves_of(portrait))
     pictures.append(Picture("time", f"Over time: {names}.", lambda figure: _draw_course(figure, portrait)))
     return pictures
 
@@ -69,35 +64,13 @@ def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None
     put_keys(figure, draw_path(axes, portrait.rows, portrait.samples.position, unit, portrait.box) + keys)
 
 
-def courses(portrait: Portrait) -> list[Curves]:
-    """What is shown over time, from the top."""
-    samples = portrait.samples
-    way = samples.position - samples.position[0]
-    moved = np.abs(samples.position).max() > FAR * max(float(np.ptp(samples.position, axis=0).max()), NOTHING)
-    x, y = (way if moved else samples.position).T
-    relative, times = "relative " if portrait.base else "", samples.time
-    label = relative + ("displacement" if moved else "position")
-    result = [Curves(label, "m", {"along x": x, "along y": y}, times), strokes_of(portrait)]
-    v_x, v_y = samples.velocity.T
-    result.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}, times))
-    result += velocities_of(portrait)
-    result.append(margins_over_time(portrait))
-    result.append(Curves("normal load", "N", {"": samples.normal_force}, times))
-    result.append(Curves("friction", "N", {"": samples.friction_force}, times))
-    return [one for one in result if one is not None]
-
-
 def _draw_course(figure: Figure, portrait: Portrait) -> None:
-    all_curves, rows, times = courses(portrait), portrait.rows, portrait.samples.time
-    figure.set_figheight((PANEL * len(all_curves) + STRIP + REST) * MM)
-    unit = unit_for(times, "s")
-    grid = figure.add_gridspec(len(all_curves) + 1, 1, height_ratios=[STRIP, *[PANEL] * len(all_curves)])
-    strip = figure.add_subplot(grid[0])
-    panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(all_curves))]
+    every, rows, unit = all_curves_of(portrait), portrait.rows, unit_for(portrait.samples.time, "s")
+    figure.set_figheight((PANEL * len(every) + STRIP + REST) * MM)
+    strip, *panels = figure.subplots(len(every) + 1, sharex=True, height_ratios=[STRIP, *[PANEL] * len(every)])
     bands: list[Artist] = []
-    for panel, curves in zip(panels, all_curves, strict=True):
+    for panel, curves in zip(panels, every, strict=True):
         bands += draw_over_time(panel, rows, curves, unit, cycles=portrait.cycles)
-        panel.tick_params(labelbottom=panel is panels[-1])
     panels[-1].set_xlabel(f"time [{unit.name}]")
     figure.align_ylabels(panels)
     keys = bands + shade_keys(rows)

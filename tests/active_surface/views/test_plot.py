@@ -15,11 +15,11 @@ from active_surface.studies import read_study, run_study
 from active_surface.studies.pictures.findings import read_findings
 from active_surface.studies.pictures.selection import Selection
 from active_surface.views.prints.plots import plot, sweep_pictures
-from active_surface.views.prints.run_pictures import courses, run_pictures
+from active_surface.views.prints.run_pictures import run_pictures
 from active_surface.views.prints.sheet import MM, drawn
 from coupling import read_case, run_case
 from coupling.pictures.portrait import portrait_of
-from coupling.pictures.time import MARKS
+from coupling.pictures.time import MARKS, all_curves_of
 from coupling.results.saved import read_run
 from particle import EventKind
 
@@ -110,7 +110,7 @@ def test_a_saved_run_looks_as_the_run_itself(folder):
     points, triangles, w = saved.plate.relief.within(saved.plate.frame)
     exact = result.shapes.values(points[::10] * (1 - 1e-9), result.scene.lifts and heights(result, saved.moment))
     assert len(triangles) > 10_000 and np.abs(w[::10] - exact[:, 0]).max() < 0.01 * exact.max()
-    for one, other in zip(courses(saved), courses(found), strict=True):
+    for one, other in zip(all_curves_of(saved), all_curves_of(found), strict=True):
         assert one.label == other.label and one.values.keys() == other.values.keys()
 
 
