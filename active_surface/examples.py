@@ -65,13 +65,13 @@ def write_example(name: str, folder: Path) -> dict[Path, bool]:
     return written
 
 
-def next_command(name: str) -> str:
-    """The command that an example is for: the one in its comment, else by its kind."""
+def command_of(name: str) -> str:
+    """The command that an example is for, with its words: the one in its comment, else by its tables."""
     text = (examples_folder() / f"{name}.toml").read_text(encoding="utf-8")
     if found := re.search(r"^# +active-surface (\w+) \S+(.*)$", text, re.MULTILINE):
-        return f"active-surface {found[1]} {name}.toml{found[2]}"
+        return f"{found[1]} {name}.toml{found[2]}"
     tables = tomllib.loads(text)
-    return f"active-surface {next(COMMANDS[one] for one in COMMANDS if one in tables)} {name}.toml"
+    return f"{next(COMMANDS[one] for one in COMMANDS if one in tables)} {name}.toml"
 
 
 def _has(path: Path, content: bytes) -> bool:

@@ -33,7 +33,7 @@ def example(name: str | None = None) -> Answer:
 
     No file is replaced.
     """
-    from active_surface.examples import example_names, next_command, write_example
+    from active_surface.examples import command_of, example_names, write_example
 
     if name is None:
         names = example_names()
@@ -41,7 +41,7 @@ def example(name: str | None = None) -> Answer:
         return Answer({"examples": names}, [(f"{one:{width}}", f"  {about}") for one, about in names.items()])
     name = name.removesuffix(".toml")
     files = {path.as_posix(): new for path, new in write_example(name, Path()).items()}
-    following = next_command(name)
+    following = f"{NAME} {command_of(name)}"
     lines = [("wrote" if new else "is there", path) for path, new in files.items()]
     return Answer({"files": files, "next": following}, [*lines, ("next", following)])
 
