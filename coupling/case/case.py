@@ -46,7 +46,7 @@ class Case(CaseTables):
             return data
         own = {key: data[key] for key in ("name", "source") if key in data}
         tables = {key: value for key, value in data.items() if key not in own}
-        return build(CaseTables.model_validate(_with_actuators(tables))) | own
+        return build(CaseTables.model_validate(_with_actuators(tables), context={})) | own
 
     def vary(self, changes: Mapping[str, Any], name: str | None = None) -> Self:
         """The same case with other values in some fields.

@@ -76,9 +76,6 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
 
     lattice: the [lattice] of the case's file, whose actuators the case has by now.
     """
-    if "[" in path:
-        dotted = re.sub(r"\[([\d*]+)\]", r".\1", path)
-        raise ValueError(f"must be a field of the case; got {path}; write {dotted}")
     if path.startswith("run.") and path[4:] in ONE_RUN:
         raise ValueError(f"must be a field that changes a path; got {path}, which a sweep does not use")
     if path in FIXED:
@@ -110,6 +107,9 @@ def locations_of(case: Case, lattice: Mapping[str, Any] | None, path: str) -> li
 
 def _ends(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Iterator[_End]:
     """Yield where a path leads to."""
+    if "[" in path:
+        dotted = re.sub(r"\[([\d*]+)\]", r".\1", path)
+        raise ValueError(f"must be a field of the case; got {path}; write {dotted}")
     first, *rest = path.split(".")
     if first not in CaseTables.model_fields:
         inner = _inner(first, case)
@@ -129,23 +129,24 @@ def _below(end: _End, keys: list[str]) -> Iterator[_End]:
         yield end
         return
     key, *rest = keys
-    name, value = location_text(end.location), end.value
+    value = end.value
     if isinstance(value, Table | dict):
         fields: Mapping[str, Any] = value if isinstance(value, dict) else type(value).model_fields
         if key not in fields:
-            raise ValueError(f"must be a field of the case; {name} has no {key or quoted(key)}; {_known(key, fields)}")
+            table = location_text(end.location)
+            raise ValueError(f"must be a field of the case; {table} has no {key or quoted(key)}; {_known(key, fields)}")
         if isinstance(value, dict):
-            inner = _End((*end.location, key), value[key], get_args(of_kind(end.annotation, dict))[1])
+            item, annotation = value[key], get_args(of_kind(end.annotation, dict))[1]
         else:
-            inner = _End((*end.location, key), getattr(value, key), fields[key].rebuild_annotation())
-        yield from _below(inner, rest)
+            item, annotation = getattr(value, key), fields[key].rebuild_annotation()
+        yield from _below(_End((*end.location, key), item, annotation), rest)
         return
     if not isinstance(value, tuple) or not value:
         has = "is not given" if value is None else "is empty" if value == () else "is a single value"
-        raise ValueError(f"must be a field of the case; its {name} {has}")
+        raise ValueError(f"must be a field of the case; its {location_text(end.location)} {has}")
     if key != ALL and not (key.isdecimal() and int(key) < len(value)):
         counted = f"are counted from 0 to {len(value) - 1}, * for all"
-        raise ValueError(f"must be a field of the case; its {name} {counted}; got {key}")
+        raise ValueError(f"must be a field of the case; its {location_text(end.location)} {counted}; got {key}")
     types = get_args(of_kind(end.annotation, tuple))
     for index in range(len(value)) if key == ALL else [int(key)]:
         item = types[0] if types[-1:] == (...,) else types[index]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Self, get_args, get_origin
 
 from pydantic import (
@@ -68,19 +69,36 @@ class InputError(ValueError):
         self.owner, self.problems = owner, problems
 
     def __str__(self) -> str:
-        return "\n".join(f"Input {field} of {self.owner} {message}" for field, message in self.problems)
+        return "\n".join(
+            " ".join(filter(None, ("Input", field, "of", self.owner, message))) for field, message in self.problems
+        )
 
 
 class _Refusing(ModelMetaclass):
     """Describes what is wrong with a table that is made in Python in the words of files."""
 
     def __call__(cls, *arguments: Any, **values: Any) -> Any:
-        try:
+        with _in_words(cls, values := {key: _plain(value) for key, value in values.items()}):
             return super().__call__(*arguments, **values)
-        except ValidationError as error:
-            model: Any = cls
-            problems = [(location_text(at), message) for at, message in mistakes_of(error, model, values)]
-            raise InputError(cls.__name__, problems) from None
+
+
+@contextmanager
+def _in_words(table: Any, values: Any) -> Iterator[None]:
+    """Turns pydantic's error into an InputError."""
+    try:
+        yield
+    except ValidationError as error:
+        problems = [(location_text(at), message) for at, message in mistakes_of(error, table, values)]
+        raise InputError(table.__name__, problems) from None
+
+
+def _plain(value: Any) -> Any:
+    """The same value without arrays and numbers of numpy."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value.tolist() if type(value).__module__ == "numpy" else value
 
 
 class Table(BaseModel, metaclass=_Refusing):
@@ -101,30 +119,35 @@ class Table(BaseModel, metaclass=_Refusing):
         """
         yield from ()
 
+    @classmethod
+    def model_validate(cls, obj: Any, **options: Any) -> Self:
+        """As in pydantic; without a validation context it raises InputError, as Python's own tables do."""
+        if "context" in options:
+            return super().model_validate(obj, **options)
+        with _in_words(cls, obj := _plain(obj)):
+            return super().model_validate(obj, **options)
+
     @model_validator(mode="wrap")
     @classmethod
     def _consistent(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
         self = handler(data)
         if self is data:  # a table already, which is right
             return self
+        values, fields, is_file = dict(self), cls.model_fields, bool(info.context)
         # In Python a default may be stated, as in the dump of a case that is made again.
         given = {
             key: value
             for key in self.model_fields_set
-            if (value := getattr(self, key)) is not None and (info.context or value != self._default(key))
+            if (value := values[key]) is not None and (is_file or value != _default(fields[key], values))
         }
         found = cls.contradictions(given)
         if wrong := [((at,) if isinstance(at, str) else at, message) for at, message in found]:
             raise Faults(wrong)
         return self
 
-    def _default(self, key: str) -> Any:
-        field = type(self).model_fields[key]
-        return (
-            field.get_default(call_default_factory=True, validated_data=dict(self))
-            if field.default_factory
-            else field.default
-        )
+
+def _default(field: FieldInfo, values: dict[str, Any]) -> Any:
+    return field.get_default(call_default_factory=True, validated_data=values) if field.default_factory else field.default
 
 
 def tag(name: str) -> str:
@@ -133,15 +156,14 @@ def tag(name: str) -> str:
 
 
 def named(key: str, names: Iterable[str], instead: str = "") -> Callable[[Any], Any]:
-    """What checks that a table says by a key which of several kinds it is; instead: of what may stand in its place."""
+    """What checks that a table says which of several it is; instead: another key by which it may say so."""
     choices = one_of(names := list(names))
 
     def check(table: Any) -> Any:
         if not isinstance(table, Mapping):
             return table
         if key not in table and not (instead and instead in table):
-            other = f", or have {instead} in its place" if instead else ""
-            raise Faults([((key,), f"is missing; it must be {choices}{other}")])
+            raise Faults([((key,), f"is missing; it must be {choices}{f', or use {instead} instead' * bool(instead)}")])
         if key in table and table[key] not in names:
             raise Faults([((key,), f"must be {choices}; got {quoted(table[key])}{_meant(table[key], names)}")])
         return table
@@ -161,13 +183,13 @@ def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: 
     for detail in error.errors():
         inner = detail.get("ctx", {}).get("error")
         at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and key.startswith(_TAG)))
-        if isinstance(inner, Faults | ValidationError):
-            mistakes += [((*at, *below), message) for below, message in mistakes_of(inner, root, value_at(tables, at))]
+        if isinstance(inner, Faults):
+            mistakes += [((*at, *below), message) for below, message in inner.mistakes]
         elif detail["type"] != "default_factory_not_called":  # it depends on a field that is wrong
             written = value_at(tables, at)
             mistakes.append((at, _message(detail, detail["input"] if written is None else written, root)))
         if detail["type"] == "extra_forbidden":
-            misspelt.add((*at[:-1], near(str(at[-1]), _owner(detail["loc"], root).model_fields) or ""))
+            misspelt.add((*at[:-1], near(str(at[-1]), _table_at(detail["loc"][:-1], root)[0].model_fields) or ""))
     if ("lattice",) in misspelt:
         misspelt.add(("actuators",))
     return [one for one in mistakes if not (one[0] in misspelt and one[1].startswith("is missing"))]
@@ -205,11 +227,12 @@ def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
     kind, location, limits = detail["type"], detail["loc"], detail.get("ctx", {})
     got = f"; got {quoted(value)}"
     header = header_of(location, root) if getattr(root, "whole_file", False) or len(location) > 1 else ""
+    written = f", written {header}" if header else " of its fields"
     if kind == "value_error":
         return str(limits["error"])
     if kind == "missing":
-        field = _owner(location, root).model_fields[location[-1]]
-        wanted = f"a table, written {header}" if tables_in(field.annotation) else expected_of(field)
+        field = _table_at(location[:-1], root)[0].model_fields[location[-1]]
+        wanted = f"a table{written}" if tables_in(field.annotation) else expected_of(field)
         return f"is missing; it must be {wanted}"
     if kind == "extra_forbidden":
         return f"is not known; {_instead(location, root)}"
@@ -219,13 +242,13 @@ def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
     if kind == "tuple_type" and header.startswith("[["):
         return f"must be written {header}, in double brackets, once for each{got}"
     if kind in ("model_type", "model_attributes_type"):
-        return f"must be a table, written {header}{got}"
+        return f"must be a table{written}{got}"
     return f"must be {RULES.get(kind, 'different').format(**limits)}{got}"
 
 
 def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
-    """What to write in place of a key that is not known."""
-    key, owner = str(location[-1]), _owner(location, root)
+    """What to write instead of a key that is not known."""
+    key, (owner, header) = str(location[-1]), _table_at(location[:-1], root)
     for name, field in root.model_fields.items():
         tables = tables_in(field.annotation)
         if others := [table.model_fields for table in tables if key in table.model_fields]:
@@ -238,45 +261,33 @@ def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
         return f"did you mean {meant}?"
     if owner is root and tables_in(next(iter(root.model_fields.values())).annotation):
         return "the file has " + ", ".join(filter(None, (header_of((name,), root) for name in root.model_fields)))
-    return f"{header_of(location[:-1], root) or 'it'} has {', '.join(owner.model_fields)}"
-
-
-def _owner(location: tuple[Any, ...], root: type[BaseModel]) -> type[BaseModel]:
-    """The table that has, or should have, the last key of a location, which has pydantic's tags in it."""
-    table, annotation = root, None
-    for key in location[:-1]:
-        if isinstance(key, str) and key in table.model_fields:
-            annotation = table.model_fields[key].rebuild_annotation()
-            table = next(iter(tables_in(annotation)), table)
-        elif annotation is not None and isinstance(key, str):
-            tagged = [part for part in parts_of(annotation) if Tag(key) in getattr(part, "__metadata__", ())]
-            table = next((inner for part in tagged for inner in tables_in(part)), table)
-    return table
+    return f"{header or 'it'} has {', '.join(owner.model_fields)}"
 
 
 def header_of(location: tuple[Any, ...], root: type[BaseModel]) -> str:
-    """How the table is written that is at a location, or that has the value there."""
-    names, several = [], False
-    for n, key in enumerate(location):
-        field = _owner((*location[:n], ""), root).model_fields.get(key) if isinstance(key, str) else None
-        if field and tables_in(field.annotation):
-            names.append(key)
-            several = any(get_origin(part) is tuple for part in parts_of(field.annotation))
+    """How the table is written that is at a location, or that has the value there: [part], [[actuators]]."""
+    return _table_at(location, root)[1]
+
+
+def _table_at(location: tuple[Any, ...], root: type[BaseModel]) -> tuple[type[BaseModel], str]:
+    """The table at a location, or that has the value there, and how it is written; pydantic's tags may be in it."""
+    table, annotation, names, several = root, None, [], False
+    for key in (key for key in location if isinstance(key, str)):
+        if key in table.model_fields:
+            annotation = table.model_fields[key].rebuild_annotation()
+            if inner := tables_in(annotation):
+                table, several = inner[0], any(get_origin(part) is tuple for part in parts_of(annotation))
+                names.append(key)
+        elif annotation is not None:
+            tagged = [part for part in parts_of(annotation) if Tag(key) in getattr(part, "__metadata__", ())]
+            table = next((inner for part in tagged for inner in tables_in(part)), table)
     name = ".".join(names)
-    return f"[[{name}]]" if several else f"[{name}]" if name else ""
+    return table, f"[[{name}]]" if several else f"[{name}]" if name else ""
 
 
 def tables_in(annotation: object) -> list[type[Table]]:
     """The tables that an annotation is made of, in its order."""
     return [part for part in parts_of(annotation) if isinstance(part, type) and issubclass(part, Table)]
-
-
-def all_tables(table: type[Table]) -> Iterator[type[Table]]:
-    """Yield a table and all those in its fields, some of them several times."""
-    yield table
-    for field in table.model_fields.values():
-        for inner in tables_in(field.annotation):
-            yield from all_tables(inner)
 
 
 def expected_of(field: FieldInfo) -> str:

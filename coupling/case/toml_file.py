@@ -13,6 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from coupling.case.table import Mistake, location_text
 from coupling.case.toml_text import TomlText
+from coupling.case.values import quoted
 from coupling.files import MAX_TEXT, contents, control_in, why
 from coupling.suggestion import near_file
 
@@ -68,6 +69,8 @@ class TomlFile(NamedTuple):
 
 def parse(path: str | os.PathLike[str]) -> TomlFile:
     """The file at `path`; CaseError, with the line of the first mistake, if it cannot be read as TOML."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise CaseError("the file", [Problem(None, "", f"must be named by a path, as text; got {quoted(path)}")])
     name = os.fspath(path)
     line: int | None = None
     if unfit := unfit_name(Path(path).stem):

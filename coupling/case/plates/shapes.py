@@ -50,10 +50,11 @@ class ShapeCase(PlateCase):
     @cached_property
     def coarse_mesh(self) -> PlateMesh:
         width, area = self.measures
-        if not area <= MAX_SLENDER * width**2:
-            raise ValueError(f"must be at most {MAX_SLENDER:g} times as long as wide; got {area / width**2:.4g} times")
+        times = area / width / width if width else 0.0  # without a width the corners are wrong, which the mesh says
+        if times > MAX_SLENDER:
+            raise ValueError(f"must be at most {MAX_SLENDER:g} times as long as wide; got {times:.4g} times")
         own = ("shape", self.shape), *self._own().items()  # type: ignore[attr-defined]
-        return _coarse(type(self), own, width / 2 or 1.0)  # without a width the corners are wrong, which the mesh says
+        return _coarse(type(self), own, width / 2 or 1.0)
 
     @property
     def min_cell_size(self) -> float:

@@ -138,13 +138,17 @@ class Quantity:
         """Return a number as it is and text in `unit`; ValueError for what is neither, or lacks a unit it needs."""
         if isinstance(value, str):
             return self.parse(value)
-        if isinstance(value, bool) or not isinstance(value, Real):
+        if isinstance(value, bool) or not isinstance(value, (float, Real)):  # the first is quicker
             raise self.refusal(value)
         if info.context and info.context.get("units_required"):
             raise self.refusal(value, ", which has no unit")
-        if not math.isfinite(value):
+        try:
+            number = float(value)
+        except OverflowError:  # an integer
+            number = math.inf
+        if not math.isfinite(number):
             raise self.refusal(value, ", which is not finite")
-        return self._in_range(value, float(value))
+        return self._in_range(value, number)
 
     def refusal(self, value: object, reason: str = "") -> ValueError:
         """The error that says what a value must be, and that this one is not."""
@@ -185,6 +189,8 @@ def quoted(value: object) -> str:
     """Return `value` as a case file would write it, or in words if that is long."""
     if isinstance(value, dict):
         return "a table"
+    if isinstance(value, int) and value.bit_length() > 1000:  # Python writes no more than 4300 digits
+        return "a whole number of more than 300 digits"
     if isinstance(value, (list, tuple)):
         if any(isinstance(item, dict) for item in value):
             return "a list of tables"

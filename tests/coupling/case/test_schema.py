@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import tomllib
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from active_surface.cli.program import main
 from active_surface.steering import AimTables
 from active_surface.studies import StudyTables
 from coupling.case import CaseTables
-from coupling.case.table import all_tables
+from coupling.case.table import Table, tables_in
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 KINDS = ("case", "study", "aim")
@@ -40,6 +41,14 @@ def template(kind: str) -> str:
     done = CliRunner().invoke(main, ["schema", kind, "--template"])
     assert done.exit_code == 0
     return done.stdout
+
+
+def all_tables(table: type[Table]) -> Iterator[type[Table]]:
+    """Yield a table and all those in its fields, some of them several times."""
+    yield table
+    for field in table.model_fields.values():
+        for inner in tables_in(field.annotation):
+            yield from all_tables(inner)
 
 
 def kind_of(path: Path) -> str:
