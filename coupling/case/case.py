@@ -18,12 +18,13 @@ from pydantic import ValidationError, model_validator
 from common import draw, notebook_html
 from coupling.case.actuators import LatticeCase
 from coupling.case.checks import build
-from coupling.case.fields import given_in, lattice_of, locations_of, put_value
+from coupling.case.fields import lattice_of, locations_of, put_value
 from coupling.case.friction import KogutEtsionCase
+from coupling.case.plates import PlatformCase
 from coupling.case.table import Faults, InputError, mistakes_of
 from coupling.case.tables import CaseTables
 from coupling.case.toml_file import parse
-from coupling.case.values import UNITS_REQUIRED
+from coupling.case.values import UNITS_REQUIRED, quoted
 
 if TYPE_CHECKING:
     from common import Axes, Figure
@@ -71,30 +72,33 @@ class Case(CaseTables):
             Names every place that is no field and every wrong value. After `lattice` is varied once its actuators are
             those of the case, and there is no `lattice` any more.
         """
+        wrong = [path for path in changes if not isinstance(path, str)] if isinstance(changes, Mapping) else [changes]
+        if wrong:
+            must = 'must give values by the paths of their fields, such as {"part.mass": "3 ng"}'
+            raise InputError("vary", [("changes", f"{must}; got {quoted(wrong[0])}")])
         tables: dict[str, Any] = {key: getattr(self, key) for key in CaseTables.model_fields}
         lattice, alone = None, len(self.actuators)
         if any(path.split(".")[0] == "lattice" for path in changes):
             lattice, alone = lattice_of(self)
         if lattice:
-            read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
-            tables["lattice"] = read
-        actuators: Any = list(self.actuators[:alone])
+            tables["lattice"] = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+        tables["actuators"] = actuators = list[Any](self.actuators[:alone])
         problems: list[tuple[str, str]] = []
         for path, value in changes.items():
             try:
                 for location in locations_of(self, lattice, path):
-                    if location[0] == "actuators" and len(location) > 1 and int(location[1]) >= alone:
-                        raise ValueError(f"must not vary actuators from {alone} on: a change of the lattice makes them")
-                    if location[0] != "actuators":
-                        tables = put_value(tables, location, value)
-                    elif len(location) == 1:
-                        actuators = list(value) if isinstance(value, (list, tuple)) else value
-                    else:
-                        actuators[int(location[1])] = put_value(actuators[int(location[1])], location[2:], value)
+                    if location[0] == "actuators" and len(location) > 1:
+                        if (k := int(location[1])) >= alone:
+                            must = f"must not vary actuators from {alone} on"
+                            raise ValueError(f"{must}: a change of the lattice makes them")
+                        if tables["actuators"] is actuators:
+                            actuators[k] = put_value(actuators[k], location[2:], value)  # in place: they may be many
+                            continue
+                    tables = put_value(tables, location, value)
             except ValueError as error:
                 problems.append((path, str(error)))
         try:
-            made = type(self)(**tables | {"actuators": actuators}, name=self.name if name is None else name)
+            made = type(self)(**tables, name=self.name if name is None else name)
         except InputError as error:
             problems += error.problems
         if problems:
@@ -140,5 +144,6 @@ def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
 
 def _with_actuators(tables: Mapping[str, Any]) -> dict[str, Any]:
     """The tables of a case, which need no actuators beside a lattice or a platform."""
-    platform = isinstance(plate := given_in(tables.get("plate")), Mapping) and plate.get("shape") == "platform"
+    plate = tables.get("plate")
+    platform = isinstance(plate, PlatformCase) or (isinstance(plate, dict) and plate.get("shape") == "platform")
     return ({"actuators": ()} if platform or tables.get("lattice") is not None else {}) | dict(tables)

@@ -7,14 +7,23 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import TypeAdapter, ValidationError
 
 from coupling.case.actuators import LatticeCase
-from coupling.case.table import Location, Table, location_text, mistakes_of, tables_in
+from coupling.case.table import Location, Table, location_text, mistakes_of, stated, tables_in
 from coupling.case.tables import CaseTables
-from coupling.case.values import UNITS_REQUIRED, Directed, marks_of, of_kind, parts_of, quantity_of, quoted
+from coupling.case.values import (
+    UNITS_REQUIRED,
+    Directed,
+    kinds_of_items,
+    marks_of,
+    of_kind,
+    parts_of,
+    quantity_of,
+    quoted,
+)
 from coupling.suggestion import near
 
 if TYPE_CHECKING:
@@ -25,7 +34,6 @@ Value = float | int | str
 ALL: Final = "*"
 ONE_RUN: Final = ("scheme", "frames", "time_step")
 """Keys of [run] that say nothing to a sweep: it locates events, and writes no frames."""
-KINDS: Final = ("model", "shape")  # say which table it is, also where Python's class does
 FIXED: Final = {"plate.mesh": "names a file", "plate.motion": "names a file", "friction.file": "names a file"} | (
     dict.fromkeys(("plate.shape", "friction.model"), "selects which other keys exist")
 )
@@ -92,11 +100,12 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     same = all(end.value == first for end in ends) and isinstance(first, (int, float, str))
     base = None if not same else str(first).lower() if isinstance(first, bool) else first
     base = float(base) if kind == "number" and base is not None else base
-    return Field(path, tuple(end.location for end in ends), unit, kind, _reader(annotation), base)
+    return Field(path, tuple(end.location for end in ends), unit, kind, reader_of(annotation), base)
 
 
 @cache
-def _reader(annotation: Any) -> TypeAdapter[Any]:
+def reader_of(annotation: Any) -> TypeAdapter[Any]:
+    """What validates a value by the annotation of its field alone."""
     return TypeAdapter(annotation)
 
 
@@ -147,14 +156,9 @@ def _below(end: _End, keys: list[str]) -> Iterator[_End]:
     if key != ALL and not (key.isdecimal() and int(key) < len(value)):
         counted = f"are counted from 0 to {len(value) - 1}, * for all"
         raise ValueError(f"must be a field of the case; its {location_text(end.location)} {counted}; got {key}")
-    types = get_args(of_kind(end.annotation, tuple))
+    kinds = kinds_of_items(end.annotation, len(value))
     for index in range(len(value)) if key == ALL else [int(key)]:
-        item = types[0] if types[-1:] == (...,) else types[index]
-        # A mark of the whole holds for items without their own, as for the accelerations along three axes.
-        marked = quantity_of(end.annotation, lists=False)
-        if marked and not quantity_of(item) and not tables_in(item):
-            item = Annotated[item, marked]
-        yield from _below(_End((*end.location, index), value[index], item), rest)
+        yield from _below(_End((*end.location, index), value[index], kinds[index]), rest)
 
 
 def _inner(key: str, case: Case) -> list[str]:
@@ -184,27 +188,8 @@ def _kind(annotation: Any) -> Literal["number", "whole", "text"] | None:
 
 
 def plain_case(case: Case) -> dict[str, Any]:
-    """The tables of a case as dicts of SI values."""
-    return {key: _plain(getattr(case, key)) for key in CaseTables.model_fields if getattr(case, key) is not None}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_plain, value))
-    return {key: _plain(item) for key, item in given_in(value).items()} if isinstance(value, Table) else value
-
-
-def given_in(value: Any) -> Any:
-    """A table as a dict of what was given in it, and all else as it is."""
-    if not isinstance(value, Table):
-        return value
-    fields = type(value).model_fields
-    return {
-        key: item
-        for key in fields
-        if (item := getattr(value, key)) is not None
-        and (key in value.model_fields_set or key in KINDS or fields[key].default is None or isinstance(item, tuple))
-    }
+    """The tables of a case by their keys."""
+    return {key: getattr(case, key) for key in CaseTables.model_fields}
 
 
 def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
@@ -215,12 +200,14 @@ def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
 
 
 def put_value(value: Any, location: Location, new: Any) -> Any:
-    """The same tables with another value at a location."""
+    """The same tables with another value at a location; ValueError where there is no such table or list any more."""
     if not location:
         return new
-    key, *rest = location
-    if isinstance(value, (tuple, list)):
-        index = int(key)
-        return (*value[:index], put_value(value[index], tuple(rest), new), *value[index + 1 :])
-    table = given_in(value)
-    return {**table, key: put_value(table.get(key), tuple(rest), new)}
+    key, rest = location[0], location[1:]
+    if isinstance(value, Table):
+        return {**stated(value), key: put_value(getattr(value, str(key)), rest, new)}
+    if isinstance(value, dict):
+        return {**value, key: put_value(value.get(key), rest, new)}
+    if isinstance(value, (tuple, list)) and isinstance(key, int) and key < len(value):
+        return (*value[:key], put_value(value[key], rest, new), *value[key + 1 :])
+    raise ValueError(f"must be in a table or list that has it; got {quoted(value)} there")

@@ -41,22 +41,22 @@ class KogutEtsionCase(Table):
     """The law: rough surfaces with adhesion, after Kogut and Etsion."""
     preset: Literal["paper"] | None = None
     """All parameters as the paper has them, the plasticity index 4.9128 among them."""
-    roughness: PositiveLength = Field(default=Default.roughness, gt=0)
+    roughness: PositiveLength = Default.roughness
     """The standard deviation of the heights of asperities."""
-    contact_area: PositiveArea = Field(default=Default.contact_area, gt=0)
+    contact_area: PositiveArea = Default.contact_area
     """The nominal area of contact, the footprint of the part."""
-    hardness: PositivePressure = Field(default=Default.hardness, gt=0)
+    hardness: PositivePressure = Default.hardness
     """The hardness of the softer material."""
     poisson_ratio: StrictFloat = Field(default=Default.poisson_ratio, ge=0, lt=0.5)
     """That of the softer material."""
-    adhesion_energy: SurfaceEnergy = Field(default=Default.adhesion_energy, gt=0)
+    adhesion_energy: SurfaceEnergy = Default.adhesion_energy
     """The work of adhesion of the two surfaces."""
     plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, ge=0.001, le=1000, examples=[2.5])
     """How far asperities yield: well below 1 they are elastic, well above plastic. Without it 2.5."""
     # The model takes the root of 1 - 3.717e-4 / asperity_beta^2.
     asperity_beta: StrictFloat = Field(default=Default.asperity_beta, gt=math.sqrt(3.717e-4), le=1000)
     """Density of asperities times their radius times the roughness."""
-    intermolecular_distance: PositiveLength = Field(default=Default.intermolecular_distance, gt=0)
+    intermolecular_distance: PositiveLength = Default.intermolecular_distance
     """The distance of atoms in equilibrium."""
     coefficients: Literal["printed", "unrounded"] = "printed"
     """Numbers of the model as its authors printed them, or without their rounding."""

@@ -1,15 +1,15 @@
-"""Scaled: a case whose drives run so many times as fast and so many times as high, or with less friction."""
+"""Scaled: a case with other frequencies, strokes or friction, in proportion to its own."""
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, TypeVar
 
-from coupling.case.actuators import ActuatorCase, DriveCase, amplitude
+from coupling.case.actuators import ActuatorCase, DriveCase, SegmentCase, amplitude
 from coupling.case.case import Case
 from coupling.case.friction import ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
 from coupling.case.plates import MotionCase, PlatformCase
 
-Drives = TypeVar("Drives", bound=DriveCase)
+Drive = TypeVar("Drive", DriveCase, ActuatorCase, SegmentCase)
 INDICES: Final = 3.0, 3.5, 4.0, 4.5, 4.9128  # of plasticity: the last is that of the paper's surfaces
 
 
@@ -22,14 +22,34 @@ def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = Fal
     """
     if frequency == 1 and stroke == 1:
         return case
-    scale = _Scale(frequency, stroke, shortly)
+
+    def time(value: float) -> float:
+        return final(value / frequency)
+
+    def height(value: float) -> float:
+        return final(value * stroke)
+
+    def scaled(drive: Drive) -> Drive:
+        scales = {"frequency": lambda value: final(value * frequency), "delay": time, "dwell": time} | dict.fromkeys(
+            ("stroke", "force"), height
+        )
+        update: dict[str, Any] = {
+            key: scale(value) for key, scale in scales.items() if (value := getattr(drive, key, None)) is not None
+        }
+        if table := getattr(drive, "table", None):
+            update["table"] = tuple((time(moment), height(top)) for moment, top in table)
+        if segments := getattr(drive, "segments", None):
+            update["segments"] = tuple(map(scaled, segments))
+        return drive.model_copy(update=update)
+
+    final = rounded if shortly else float
     if isinstance(case.plate, PlatformCase):
         if not isinstance(case.plate.motion, MotionCase):
             return case
         axes = {axis: drive for axis, drive in case.plate.motion if drive is not None}
-        motion = case.plate.motion.model_copy(update={axis: scale.of(drive) for axis, drive in axes.items()})
+        motion = case.plate.motion.model_copy(update={axis: scaled(drive) for axis, drive in axes.items()})
         return case.model_copy(update={"plate": case.plate.model_copy(update={"motion": motion})})
-    return case.model_copy(update={"actuators": tuple(scale.of(actuator) for actuator in case.actuators)})
+    return case.model_copy(update={"actuators": tuple(scaled(actuator) for actuator in case.actuators)})
 
 
 def ramped_case(case: Case, ramp: float) -> Case | None:
@@ -49,46 +69,6 @@ def ramped_case(case: Case, ramp: float) -> Case | None:
 def _may_grow(actuator: ActuatorCase, ramp: float) -> bool:
     room = actuator.cycles is None or 2 * ramp <= actuator.cycles
     return actuator.force is not None and actuator.cycle in ("sine", "cosine") and actuator.ramp == 0 and room
-
-
-class _Scale(NamedTuple):
-    """What drives are scaled by; shortly: to 12 digits."""
-
-    frequency: float
-    stroke: float
-    shortly: bool
-
-    def of(self, drive: Drives) -> Drives:
-        """A drive, scaled."""
-        update: dict[str, Any] = {"delay": self._time(drive.delay), "dwell": self._time(drive.dwell)}
-        if drive.frequency is not None:
-            update["frequency"] = self._round(drive.frequency * self.frequency)
-        for key in ("stroke", "force"):
-            if (value := getattr(drive, key, None)) is not None:
-                update[key] = self._height(value)
-        if drive.table is not None:
-            update["table"] = tuple((self._time(time), self._height(height)) for time, height in drive.table)
-        if drive.segments is not None:
-            update["segments"] = tuple(
-                one.model_copy(
-                    update={
-                        "stroke": None if one.stroke is None else self._height(one.stroke),
-                        "frequency": None if one.frequency is None else self._round(one.frequency * self.frequency),
-                        "dwell": self._time(one.dwell),
-                    }
-                )
-                for one in drive.segments
-            )
-        return drive.model_copy(update=update)
-
-    def _time(self, time: float) -> float:
-        return self._round(time / self.frequency)
-
-    def _height(self, height: float) -> float:
-        return self._round(height * self.stroke)
-
-    def _round(self, value: float) -> float:
-        return rounded(value) if self.shortly else value
 
 
 def rounded(value: float) -> float:

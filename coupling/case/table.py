@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Self, get_args, get_origin
 
 from pydantic import (
@@ -133,21 +134,37 @@ class Table(BaseModel, metaclass=_Refusing):
         self = handler(data)
         if self is data:  # a table already, which is right
             return self
-        values, fields, is_file = dict(self), cls.model_fields, bool(info.context)
-        # In Python a default may be stated, as in the dump of a case that is made again.
-        given = {
-            key: value
-            for key in self.model_fields_set
-            if (value := values[key]) is not None and (is_file or value != _default(fields[key], values))
-        }
+        # In Python a default may be given, as in the dump of a case that is made again.
+        keys = self.model_fields_set
+        given = (
+            {key: value for key in keys if (value := getattr(self, key)) is not None} if info.context else stated(self)
+        )
         found = cls.contradictions(given)
         if wrong := [((at,) if isinstance(at, str) else at, message) for at, message in found]:
             raise Faults(wrong)
         return self
 
 
-def _default(field: FieldInfo, values: dict[str, Any]) -> Any:
-    return field.get_default(call_default_factory=True, validated_data=values) if field.default_factory else field.default
+def stated(table: Table) -> dict[str, Any]:
+    """The values of a table, by their keys, that are not what they would be anyway."""
+    values = vars(table)
+    found = {key: value for key, usual in _usual(type(table)).items() if (value := values[key]) not in (None, usual)}
+    for key, field in _made(type(table)):
+        if found.get(key) == field.get_default(call_default_factory=True, validated_data=values):
+            del found[key]
+    return found
+
+
+@cache
+def _usual(model: type[Table]) -> dict[str, Any]:
+    """What each field is where it is not given; None of those that are always stated."""
+    return {key: None if names_its_table(field) else field.default for key, field in model.model_fields.items()}
+
+
+@cache
+def _made(model: type[Table]) -> list[tuple[str, FieldInfo]]:
+    """The fields whose defaults follow from others."""
+    return [(key, field) for key, field in model.model_fields.items() if field.default_factory]
 
 
 def tag(name: str) -> str:
@@ -288,6 +305,11 @@ def _table_at(location: tuple[Any, ...], root: type[BaseModel]) -> tuple[type[Ba
 def tables_in(annotation: object) -> list[type[Table]]:
     """The tables that an annotation is made of, in its order."""
     return [part for part in parts_of(annotation) if isinstance(part, type) and issubclass(part, Table)]
+
+
+def names_its_table(field: FieldInfo) -> bool:
+    """Whether a field has one choice and so only says which table has it, as the model of a law."""
+    return get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1
 
 
 def expected_of(field: FieldInfo) -> str:

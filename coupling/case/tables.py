@@ -19,13 +19,13 @@ MAX_STEPS: Final = 100_000_000  # of a fixed scheme
 class PartCase(Table):
     """The micropart at the start, in kg, m, m/s and N."""
 
-    mass: Mass = Field(gt=0)
+    mass: Mass
     """Its mass."""
     position: Point = Field(examples=[["100 um", "50 um"]])
     """Where it is at the start; on the plate, or counted from the platform."""
     velocity: Velocity = (0.0, 0.0)
     """How fast it moves at the start, over the platform if there is one."""
-    size: PositiveLength | None = Field(default=None, gt=0, examples=["100 um"])
+    size: PositiveLength | None = Field(default=None, examples=["100 um"])
     """The side of its footprint, for the check of curvature; without it the root of the contact area."""
     squeeze: Force = Field(default=0.0, ge=0)
     """A constant force that presses it onto the surface, along the normal."""
@@ -36,7 +36,7 @@ class PartCase(Table):
 class RunCase(Table):
     """The run, in s and m/s^2."""
 
-    duration: PositiveTime = Field(gt=0, examples=["50 ms"])
+    duration: PositiveTime = Field(examples=["50 ms"])
     """How long the part is followed."""
     start: Literal["rest", "steady"] = "rest"
     """Whether a plate with inertia begins at rest, or in the steady state of drives that have always been running."""
@@ -50,7 +50,7 @@ class RunCase(Table):
     """The time steps in the result files; without it 20 to a cycle of the fastest drive, up to about 300 MB."""
     scheme: Literal["events", "fixed", "paper"] = "events"
     """How the path is found: by located events, or for comparison by fixed steps."""
-    time_step: PositiveTime | None = Field(default=None, gt=0, examples=["0.1 us"])
+    time_step: PositiveTime | None = Field(default=None, examples=["0.1 us"])
     """That of fixed steps; without it 1e-4 of the shortest stroke."""
     after_detachment: Literal["stop", "fly"] = "stop"
     """Whether the run ends where the part comes off, or follows its flight."""

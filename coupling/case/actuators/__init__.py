@@ -9,5 +9,4 @@ from coupling.case.actuators.lattice import (
     gaps,
     half_size,
     must_be_inside,
-    outside,
 )

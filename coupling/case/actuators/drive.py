@@ -79,7 +79,7 @@ class SegmentCase(Table):
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises from where it is; negative: down. Not with "hold"."""
-    frequency: Frequency | None = Field(default=None, gt=0)
+    frequency: Frequency | None = None
     """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"
     """Up and down again, up to stay, or a wait of one dwell."""
@@ -105,22 +105,44 @@ class SegmentCase(Table):
             yield "dwell", 'must be greater than 0 with cycle = "hold"; got 0 s'
 
 
-class Driven(Table):
-    """A table with the keys of a drive: which of them go together."""
+class DriveCase(Table):
+    """A drive over time, in m, Hz and s: a `stroke` with a `frequency`, a `table`, or `segments`, a schedule."""
 
-    owner: ClassVar[str] = "a drive"
-    drivers: ClassVar[tuple[str, ...]] = ("stroke", "table", "segments")
-    in_place: ClassVar[str] = "a table or segments"
-    """What a stroke may be replaced by, in words."""
+    owner: ClassVar[str] = "an actuator"
+
+    stroke: Length | None = Field(default=None, examples=["50 um"])
+    """How far it rises; 0: it keeps the plate at 0; negative: down."""
+    frequency: Frequency | None = None
+    """One cycle takes one over this, and the dwells."""
+    cycle: Cycle = "up-down"
+    """Up in the first half and down in the second; up once and held; or sines."""
+    cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
+    """How many cycles there are, after which it rests where it began; without it they do not end."""
+    dwell: Time = Field(default=0.0, ge=0)
+    """The rest after each stroke, up and down."""
+    phase: Angle = Field(default=0.0, examples=["90 deg"])
+    """Where in its cycle it begins; a whole cycle, dwells included, has 360 deg. Not with "up"."""
+    ramp: Ramp = Field(default=0.0, examples=[3])
+    """Cycles over which a "sine" or "cosine" grows from rest, and decays over the last of its cycles."""
+    table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
+    """Instead of a stroke: heights at given times, with a smooth stroke from each to the next."""
+    segments: tuple[SegmentCase, ...] | None = None
+    """Instead of a stroke: a schedule, one table after the other."""
+    repeats: Repeats = 1
+    """How often a table or schedule comes."""
+    delay: Time = Field(default=0.0, ge=0)
+    """The rest before all this."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        drivers = [key for key in cls.drivers if key in given]
+        drivers = [key for key in _NAMED if key in given]
         for key in drivers[1:]:
-            only = f"{cls.owner} is driven by one of {', '.join(cls.drivers[:-1])} and {cls.drivers[-1]}"
+            *others, last = (one for one in _NAMED if one in cls.model_fields)
+            only = f"{cls.owner} is driven by one of {', '.join(others)} and {last}"
             yield key, f"must not be given with {_NAMED[drivers[0]]}; {only}"
         if not drivers:
-            yield "stroke", f'is missing; it must be a length such as "150 um", or have {cls.in_place} in its place'
+            other = 'a force such as "1 mN", ' * ("force" in cls.model_fields) + "a table or segments instead"
+            yield "stroke", f'is missing; it must be a length such as "150 um", or use {other}'
         if drivers and drivers[0] in ("table", "segments"):
             yield from cls._beside_times(drivers[0], given)
         else:
@@ -175,52 +197,26 @@ class Driven(Table):
             yield "repeats", f"must not be given with {_NAMED[driver]} {ends}"
 
 
-class DriveCase(Driven):
-    """A drive over time, in m, Hz and s: a `stroke` with a `frequency`, a `table`, or `segments`, a schedule."""
+class Pushing(Table):
+    """What an actuator has beside its drive, and what it can bear."""
 
-    stroke: Length | None = Field(default=None, examples=["50 um"])
-    """How far it rises; 0: it only holds the plate; negative: down."""
-    frequency: Frequency | None = Field(default=None, gt=0)
-    """One cycle takes one over this, and the dwells."""
-    cycle: Cycle = "up-down"
-    """Up in the first half and down in the second; up once and held; or sines."""
-    cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
-    """How many cycles there are, after which it rests where it began; without it they do not end."""
-    dwell: Time = Field(default=0.0, ge=0)
-    """The rest after each stroke, up and down."""
-    phase: Angle = Field(default=0.0, examples=["90 deg"])
-    """Where in its cycle it begins; a whole cycle, dwells included, has 360 deg. Not with "up"."""
-    ramp: Ramp = Field(default=0.0, examples=[3])
-    """Cycles over which a "sine" or "cosine" grows from rest, and decays over the last of its cycles."""
-    table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
-    """In place of a stroke: heights at given times, with a smooth stroke from each to the next."""
-    segments: tuple[SegmentCase, ...] | None = None
-    """In place of a stroke: a schedule, one table after the other."""
-    repeats: Repeats = 1
-    """How often a table or schedule comes."""
-    delay: Time = Field(default=0.0, ge=0)
-    """The rest before all this."""
+    force: Force | None = Field(default=None, examples=["1 mN"])
+    """Instead of a stroke: it floats and pushes with this force; negative: it pulls."""
+    stiffness: Stiffness | None = None
+    """The stiffness of a spring between actuator and plate; without it there is none. Not with a force."""
+    max_stroke: PositiveLength | None = Field(default=None, examples=["150 um"])
+    """The largest height, up or down, that it can reach. Not with a force."""
+    max_force: PositiveForce | None = Field(default=None, examples=["100 mN"])
+    """The largest force, up or down, that it can bear."""
 
 
 class _Place(Table):
     position: Point = Field(examples=[["0 um", "0 um"]])
     """Where it stands, inside the rim."""
-    force: Force | None = Field(default=None, examples=["1 mN"])
-    """In place of a stroke: it floats and pushes with this force; negative: it pulls."""
-    stiffness: Stiffness | None = Field(default=None, gt=0)
-    """That of a spring between actuator and plate; without it there is none. Not with a force."""
-    max_stroke: PositiveLength | None = Field(default=None, gt=0, examples=["150 um"])
-    """The largest height, up or down, that it can reach. Not with a force."""
-    max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
-    """The largest force, up or down, that it can bear."""
 
 
-class ActuatorCase(DriveCase, _Place):
-    """A point actuator, in m, N/m and N, and what drives it: a drive, or a `force` in place of its stroke."""
-
-    owner: ClassVar[str] = "an actuator"
-    drivers: ClassVar[tuple[str, ...]] = ("stroke", "force", "table", "segments")
-    in_place: ClassVar[str] = 'a force such as "1 mN", a table or segments'
+class ActuatorCase(DriveCase, Pushing, _Place):
+    """A point actuator, in m, N/m and N, and what drives it: a drive, or a `force` instead of its stroke."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:

@@ -3,38 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple
 
-from pydantic import AfterValidator, Field, StrictInt, ValidationError, WrapValidator
+from pydantic import Field, StrictInt
 
-from coupling.case.actuators.drive import (
-    MAX_PASSES,
-    ActuatorCase,
-    Cycle,
-    Driven,
-    Points,
-    Ramp,
-    Repeats,
-    SegmentCase,
-    limit_faults,
-)
-from coupling.case.table import RULES, Contradictions, Faults
+from coupling.case.actuators.drive import ActuatorCase, DriveCase, Pushing, limit_faults
+from coupling.case.table import Contradictions, Faults, Table
 from coupling.case.values import (
     DIMENSIONS,
-    RANGES,
-    UNITS_REQUIRED,
     Amount,
-    Choice,
     Condition,
     Directed,
     Formula,
     Length,
     Point,
-    PositiveForce,
-    PositiveLength,
     Quantity,
-    adapter,
+    Where,
     length_text,
     quoted,
 )
@@ -52,58 +37,20 @@ AMOUNTS: Final = {
     "force": Amount("N", "2 uN"),
     "stiffness": Amount("N/m", "1e4 N/m", positive=True),
     "frequency": Amount("Hz", "300 Hz", positive=True),
-    "dwell": Amount("s", "50 ms"),
-    "delay": Amount("s", "50 ms"),
+    "dwell": Amount("s", "50 ms", from_0=True),
+    "delay": Amount("s", "50 ms", from_0=True),
     "phase": Amount("rad", "90 deg"),
 }
 """The keys of an actuator that may be formulas."""
-SHARED: Final = ("cycle", "cycles", "ramp", "table", "segments", "repeats", "max_stroke", "max_force")
-"""Its keys that are the same for all."""
 
 
-def _apart(pitch: Any) -> Any:
-    if (least := min(pitch if isinstance(pitch, tuple) else (pitch,))) <= 0:
-        raise ValueError(f"must be greater than 0; got {length_text(least)}")
-    return pitch
-
-
-def _positive(value: object, handler: Callable[[object], Any]) -> Any:
-    amount = handler(value)
-    if isinstance(amount, float) and amount <= 0:
-        raise ValueError(f"must be greater than 0; got {quoted(value)}")
-    return amount
-
-
-def _not_negative(value: object, handler: Callable[[object], Any]) -> Any:
-    amount = handler(value)
-    if isinstance(amount, float) and amount < 0:
-        raise ValueError(f"must be at least 0; got {quoted(value)}")
-    return amount
-
-
-_ABOVE_0, _FROM_0 = WrapValidator(_positive), WrapValidator(_not_negative)
-
-
-class LatticeCase(Driven):
-    """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
-
-    In a hexagonal lattice rows are sqrt(3)/2 pitches apart, and every second one, counted from the middle one (of an
-    even number the lower of the two), is half a pitch further to the right.
-
-    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
-    `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
-    """
-
-    owner: ClassVar[str] = ActuatorCase.owner
-    drivers: ClassVar[tuple[str, ...]] = ActuatorCase.drivers
-    in_place: ClassVar[str] = ActuatorCase.in_place
-
+class _Places(Table):
     rows: StrictInt = Field(ge=1, examples=[3])
     """How many rows there are, along y."""
     columns: StrictInt = Field(ge=1, examples=[3])
     """How many columns there are, along x."""
-    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), AfterValidator(_apart)] = (
-        Field(examples=["100 um"])
+    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um", positive=True), "xy")] = Field(
+        examples=["100 um"]
     )
     """The distance of neighbours, or two: along x and along y; in a hexagonal lattice one."""
     centre: Point = (0.0, 0.0)
@@ -112,50 +59,8 @@ class LatticeCase(Driven):
     """Rows above each other, or every second row moved by half a pitch, so that all neighbours are one pitch apart."""
     margin: Length | None = Field(default=None, ge=0, examples=["20 um"])
     """Actuators nearer than this to the rim, or beyond it, are left out; without it they are a mistake."""
-    where: Annotated[Condition, Choice()] | None = Field(default=None, examples=["not (row == 1 and column == 1)"])
+    where: Where | None = Field(default=None, examples=["not (row == 1 and column == 1)"])
     """An expression of row, column, x and y that is true where there is an actuator."""
-    force: Annotated[float | Formula, AMOUNTS["force"]] | None = Field(default=None, examples=["1 mN"])
-    """As of an actuator, or an expression and its unit."""
-    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"], _ABOVE_0] | None = None
-    """As of an actuator, or an expression and its unit."""
-    stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = Field(default=None, examples=["5 um"])
-    """As of an actuator, or an expression and its unit."""
-    frequency: Annotated[float | Formula, AMOUNTS["frequency"], _ABOVE_0] | None = None
-    """As of an actuator, or an expression and its unit."""
-    cycle: Cycle = "up-down"
-    """As of an actuator, the same for all."""
-    cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
-    """As of an actuator, the same for all."""
-    dwell: Annotated[float | Formula, AMOUNTS["dwell"], _FROM_0] = 0.0
-    """As of an actuator, or an expression and its unit."""
-    phase: Annotated[float | Formula, AMOUNTS["phase"]] = Field(default=0.0, examples=["60 * column deg"])
-    """As of an actuator, or an expression and its unit: a wave over the lattice."""
-    ramp: Ramp = Field(default=0.0, examples=[3])
-    """As of an actuator, the same for all."""
-    table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
-    """As of an actuator, the same for all."""
-    segments: tuple[SegmentCase, ...] | None = None
-    """As of an actuator, the same for all."""
-    repeats: Repeats = 1
-    """As of an actuator, the same for all."""
-    max_stroke: PositiveLength | None = Field(default=None, gt=0, examples=["150 um"])
-    """As of an actuator, the same for all."""
-    max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
-    """As of an actuator, the same for all."""
-    delay: Annotated[float | Formula, AMOUNTS["delay"], _FROM_0] = Field(
-        default=0.0, examples=["0.05 * (row + column) ms"]
-    )
-    """As of an actuator, or an expression and its unit."""
-
-    @classmethod
-    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        yield from super().contradictions(given)
-        if given.get("kind") == "hexagonal" and isinstance(given["pitch"], tuple):
-            yield "pitch", 'must be one length with kind = "hexagonal", in which all neighbours are as far apart'
-        count = given["rows"] * given["columns"]
-        if count > MAX_PLACES:
-            shorter, longer = sorted(("rows", "columns"), key=given.__getitem__)
-            yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
 
     def spots(self) -> list[Spot]:
         """All its places, row by row from the lowest, each from the left."""
@@ -176,6 +81,42 @@ class LatticeCase(Driven):
         row, column, x, y = spot
         whole = {"pi": math.pi, "rows": float(self.rows), "columns": float(self.columns)}
         return {**whole, "row": float(row), "column": float(column), "x": x, "y": y}
+
+
+class LatticeCase(DriveCase, Pushing, _Places):
+    """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
+
+    In a hexagonal lattice rows are sqrt(3)/2 pitches apart, and every second one, counted from the middle one (of an
+    even number the lower of the two), is half a pitch further to the right.
+
+    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
+    `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
+    """
+
+    force: Annotated[float | Formula, AMOUNTS["force"]] | None = Field(default=None, examples=["1 mN"])  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"]] | None = None  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+    stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = Field(default=None, examples=["5 um"])  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+    frequency: Annotated[float | Formula, AMOUNTS["frequency"]] | None = None  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+    dwell: Annotated[float | Formula, AMOUNTS["dwell"]] = 0.0  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+    phase: Annotated[float | Formula, AMOUNTS["phase"]] = Field(default=0.0, examples=["60 * column deg"])  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit: a wave over the lattice."""
+    delay: Annotated[float | Formula, AMOUNTS["delay"]] = Field(default=0.0, examples=["0.05 * (row + column) ms"])  # type: ignore[assignment]
+    """As of an actuator, or an expression and its unit."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        yield from super().contradictions(given)
+        if given.get("kind") == "hexagonal" and isinstance(given["pitch"], tuple):
+            yield "pitch", 'must be one length with kind = "hexagonal", in which all neighbours are as far apart'
+        count = given["rows"] * given["columns"]
+        if count > MAX_PLACES:
+            shorter, longer = sorted(("rows", "columns"), key=given.__getitem__)
+            yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
 
 
 class Spot(NamedTuple):
@@ -202,7 +143,7 @@ def actuators_of(lattice: LatticeCase, mesh: PlateMesh) -> tuple[ActuatorCase, .
             wrong.append((("lattice", key), str(error)))
     if wrong:
         raise Faults(wrong)
-    same = {key: getattr(lattice, key) for key in SHARED}
+    same = {key: getattr(lattice, key) for key in ActuatorCase.model_fields if key not in ("position", *AMOUNTS)}
     if same["max_stroke"] is not None or same["max_force"] is not None:
         for k, spot in enumerate(spots):
             for at, message in limit_faults({**same, "stroke": columns["stroke"][k], "force": columns["force"][k]}):
@@ -257,34 +198,11 @@ def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[float
         except ValueError as error:
             rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
             raise ValueError(f"{rule}; {quoted(amount.text)} {error} at {spot}") from None
-        if rule := _broken_rule(key, value):
+        if rule := AMOUNTS[key].broken_rule(value):
             got = f"{quoted(amount.text)} is {value / amount.scale:g} {amount.unit} at {spot}"
             raise ValueError(f"must be {rule} for each actuator; {got}")
         found.append(value)
     return found
-
-
-def _broken_rule(key: str, value: float) -> str:
-    """What a value of a key of AMOUNTS must be in an actuator, in words; "" where it is that."""
-    try:
-        adapter(ActuatorCase, key).validate_python(value)
-    except ValidationError as error:
-        detail: Any = error.errors()[0]
-        if detail["type"] == "value_error":
-            least, most = RANGES[AMOUNTS[key].unit]
-            return f"from {least:g} to {most:g} {AMOUNTS[key].unit}"
-        return RULES[detail["type"]].format(**detail.get("ctx", {}))
-    return ""
-
-
-def outside(lattice: Mapping[str, Any], places: Sequence[Place]) -> str:
-    """The condition of a lattice, as a file has it, that leaves some of its places out as well."""
-    read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
-    spots = {(spot.x, spot.y): spot for spot in read.spots()}
-    several = [key for key in ("row", "column") if lattice[f"{key}s"] > 1]
-    left = [" or ".join(f"{key} != {getattr(spots[place], key)}" for key in several) for place in places]
-    parts = [*([lattice["where"]] if "where" in lattice else []), *left]
-    return " and ".join(f"({part})" for part in parts) if len(parts) > 1 else "".join(parts)
 
 
 def half_size(mesh: PlateMesh) -> float:

@@ -104,7 +104,7 @@ class PlateCase(Table, ABC):
     """Whether the plate only bends, or also stretches as it deflects."""
     in_plane_supports: InPlaneSupports = "immovable"
     """How boundaries that are not free are held in the plane, or a table with how each is; those left out can move."""
-    youngs_modulus: PositivePressure | None = Field(default=None, gt=0)
+    youngs_modulus: PositivePressure | None = None
     """Young's modulus, of an isotropic plate."""
     poisson_ratio: StrictFloat | None = Field(default=None, ge=0, lt=0.5, examples=[0.3])
     """Poisson's ratio, of an isotropic plate."""
@@ -112,15 +112,15 @@ class PlateCase(Table, ABC):
     """The plane in which the plate is cut from a cubic crystal, in place of a Young's modulus and a Poisson's ratio."""
     wafer_angle: Angle = Field(default=0.0, examples=["0 deg"])
     """From x to a direction <110> of the crystal, along which a (100) wafer has its primary flat."""
-    c11: PositivePressure = Field(default=SILICON[0], gt=0)
+    c11: PositivePressure = SILICON[0]
     """The crystal's elastic constant c11; that of silicon by default."""
     c12: Pressure = SILICON[1]
     """Its elastic constant c12."""
-    c44: PositivePressure = Field(default=SILICON[2], gt=0)
+    c44: PositivePressure = SILICON[2]
     """Its elastic constant c44."""
-    thickness: PositiveLength = Field(gt=0, examples=["5 um"])
+    thickness: PositiveLength = Field(examples=["5 um"])
     """How thick it is."""
-    density: Density | None = Field(default=None, gt=0)
+    density: Density | None = None
     """With it drives are compared with the plate's first frequency; `inertia` needs it."""
     inertia: StrictBool = False
     """Whether the plate's mass counts, so that it rings and resonates."""

@@ -73,7 +73,7 @@ class PlatformCase(Table):
         | None
     ) = Field(default=None, examples=["shaker.csv"])
     """What moves it: a CSV file of a measured motion beside the case file, or a table for each axis."""
-    smoothing: PositiveLength | None = Field(default=None, gt=0, examples=["0.1 um"])
+    smoothing: PositiveLength | None = Field(default=None, examples=["0.1 um"])
     """How far positions in the file are from the motion, root mean square; without it the data say so."""
 
     @classmethod

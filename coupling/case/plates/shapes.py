@@ -30,7 +30,7 @@ COARSER = 2.0  # times: the cells that refinement of a stretching plate begins w
 class ShapeCase(PlateCase):
     """A plate given by a few lengths in m, around the origin."""
 
-    cell_size: PositiveLength | None = Field(default=None, gt=0, examples=["50 um"])
+    cell_size: PositiveLength | None = Field(default=None, examples=["50 um"])
     """The size of the mesh's cells, at most half of the smallest width; without it the mesh is refined as it needs."""
 
     @property
@@ -84,7 +84,7 @@ class DiscCase(ShapeCase):
 
     shape: Literal["disc"]
     """A disc around the origin; its boundary is rim."""
-    radius: PositiveLength = Field(gt=0, examples=["300 um"])
+    radius: PositiveLength = Field(examples=["300 um"])
     """From the centre to the rim."""
 
     @property
@@ -97,9 +97,9 @@ class RectangleCase(ShapeCase):
 
     shape: Literal["rectangle"]
     """A rectangle around the origin; its boundaries are left, right, bottom and top."""
-    width: PositiveLength = Field(gt=0, examples=["600 um"])
+    width: PositiveLength = Field(examples=["600 um"])
     """Along x."""
-    height: PositiveLength = Field(gt=0, examples=["400 um"])
+    height: PositiveLength = Field(examples=["400 um"])
     """Along y."""
 
     @property
@@ -112,9 +112,9 @@ class AnnulusCase(ShapeCase):
 
     shape: Literal["annulus"]
     """A disc with a round hole; its boundaries are inner and outer."""
-    inner_radius: PositiveLength = Field(gt=0, examples=["100 um"])
+    inner_radius: PositiveLength = Field(examples=["100 um"])
     """The radius of the hole."""
-    outer_radius: PositiveLength = Field(gt=0, examples=["300 um"])
+    outer_radius: PositiveLength = Field(examples=["300 um"])
     """The radius of the disc."""
 
     @classmethod
@@ -134,9 +134,9 @@ class EllipseCase(ShapeCase):
 
     shape: Literal["ellipse"]
     """An ellipse around the origin; its boundary is rim."""
-    semi_axis_x: PositiveLength = Field(gt=0, examples=["300 um"])
+    semi_axis_x: PositiveLength = Field(examples=["300 um"])
     """Half of its axis along x."""
-    semi_axis_y: PositiveLength = Field(gt=0, examples=["200 um"])
+    semi_axis_y: PositiveLength = Field(examples=["200 um"])
     """Half of its axis along y."""
 
     @property
@@ -203,7 +203,7 @@ class RegularPolygonCase(ShapeCase):
     """A regular polygon around the origin, by its sides and its radius; its boundary is rim."""
     sides: StrictInt = Field(ge=3, le=1000, examples=[6])
     """How many sides it has."""
-    radius: PositiveLength = Field(gt=0, examples=["300 um"])
+    radius: PositiveLength = Field(examples=["300 um"])
     """From the centre to a corner."""
     rotation: Angle = Field(default=0.0, examples=["30 deg"])
     """Turns it counter-clockwise; without it a corner lies on the x axis."""
@@ -227,7 +227,7 @@ class MeshCase(PlateCase):
 
     mesh: FileBeside = Field(examples=["plate.msh"])
     """A mesh file of gmsh, VTU or XDMF, beside the case file; its boundaries are the physical curves."""
-    mesh_unit: PositiveLength = Field(default=1.0, gt=0, examples=["1 um"])
+    mesh_unit: PositiveLength = Field(default=1.0, examples=["1 um"])
     """What one unit of its coordinates stands for."""
 
     @cached_property

@@ -10,13 +10,12 @@ from coupling.case.values.csv_columns import (
     read_rows,
     unreadable,
 )
-from coupling.case.values.formula import Amount, Choice, Condition, Formula, unit_of
+from coupling.case.values.formula import Amount, Condition, Formula, Where, unit_of
 from coupling.case.values.quantities import (
     AXES,
     Angle,
     Density,
     Directed,
-    Expected,
     FileBeside,
     Force,
     Foundation,
@@ -37,7 +36,7 @@ from coupling.case.values.quantities import (
     Tension,
     Time,
     Velocity,
-    adapter,
+    kinds_of_items,
     marks_of,
     of_kind,
     parts_of,
@@ -48,6 +47,7 @@ from coupling.case.values.units import (
     LONGEST,
     RANGES,
     UNITS_REQUIRED,
+    Expected,
     Quantity,
     length_text,
     prefixed,

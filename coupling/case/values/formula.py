@@ -12,13 +12,13 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import CoreSchema, core_schema
 from simpleeval import InvalidExpression, SimpleEval
 
-from coupling.case.values.units import Quantity, quoted
+from coupling.case.values.units import RANGES, Expected, Quantity, quoted
 from coupling.suggestion import near
 
 NAMES: Final = ("row", "column", "rows", "columns", "x", "y", "pi")
@@ -167,7 +167,12 @@ class Condition:
 
 @dataclass(frozen=True)
 class Amount(Quantity):
-    """Marks a quantity that is the same for every actuator of a lattice, a float, or a `Formula`."""
+    """Marks a quantity that is the same for every actuator of a lattice, a float, or a `Formula`.
+
+    from_0: whether it must not be negative.
+    """
+
+    from_0: bool = False
 
     @property
     def expected(self) -> str:
@@ -186,35 +191,41 @@ class Amount(Quantity):
             rule = "an expression and, once at its end, a unit"
             raise ValueError(f"must be {rule}; got {quoted(text)}{reason}") from None
 
+    def broken_rule(self, value: float) -> str:
+        """What a value must be at an actuator, in words; "" where it is that."""
+        least, most = RANGES[self.unit]
+        if abs(value) > most or (self.positive and 0 < abs(value) < least):
+            return f"from {least:g} to {most:g} {self.unit}"
+        return "greater than 0" if self.positive and value <= 0 else "at least 0" if self.from_0 and value < 0 else ""
+
+    def validate(self, value: object, info: ValidationInfo) -> float | Formula:  # type: ignore[override]
+        """As that of a quantity; a formula stays as it is."""
+        amount = value if isinstance(value, Formula) else super().validate(value, info)
+        if self.from_0 and isinstance(amount, float) and amount < 0:
+            raise ValueError(f"must be at least 0; got {quoted(value)}")
+        return amount
+
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(
-            lambda value, info: value if isinstance(value, Formula) else self.validate(value, info)
-        )
+        return core_schema.with_info_plain_validator_function(self.validate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "string", "examples": [self.example]}
 
 
-@dataclass(frozen=True)
-class Choice:
-    """Marks a `Condition`."""
+_CHOICE: Final = 'an expression that is true or false, such as "hypot(x, y) > 100e-6"'
 
-    expected = 'an expression that is true or false, such as "hypot(x, y) > 100e-6"'
 
-    def validate(self, value: object) -> Condition:
-        """The condition that a text states; ValueError unless it is one."""
-        if isinstance(value, Condition):
-            return value
-        try:
-            source, rest = split(value) if isinstance(value, str) else ("", "")
-            if rest:
-                raise ValueError(f'"{rest}" is too much; it has no unit, x and y are in metres')
-            return Condition(str(value), Expression(source))
-        except ValueError as error:
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}: {error}") from None
+def condition(value: object) -> Condition:
+    """The condition that a text states; ValueError unless it is one."""
+    if isinstance(value, Condition):
+        return value
+    try:
+        source, rest = split(value) if isinstance(value, str) else ("", "")
+        if rest:
+            raise ValueError(f'"{rest}" is too much; it has no unit, x and y are in metres')
+        return Condition(str(value), Expression(source))
+    except ValueError as error:
+        raise ValueError(f"must be {_CHOICE}; got {quoted(value)}: {error}") from None
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"type": "string"}
+Where = Annotated[Condition, PlainValidator(condition), Expected(_CHOICE), WithJsonSchema({"type": "string"})]

@@ -8,17 +8,14 @@ with a unit of the right dimension. A number without a unit is taken as SI, or r
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Final, NamedTuple, get_args, get_origin
+from typing import Annotated, Any, Final, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     StrictStr,
-    TypeAdapter,
     ValidationInfo,
 )
 from pydantic_core import CoreSchema, core_schema
@@ -27,12 +24,6 @@ from coupling.case.values.units import Quantity, quoted
 
 AXES: Final = ("x", "y", "z")
 _COUNTS: Final = {2: "two", 3: "three"}
-
-
-class Expected(NamedTuple):
-    """Marks a field with what its value must be, in words."""
-
-    expected: str
 
 
 @dataclass(frozen=True)
@@ -138,7 +129,12 @@ def quantity_of(annotation: Any, lists: bool = True) -> Quantity | None:
     return next((mark for mark in marks if isinstance(mark, Quantity)), None)
 
 
-@cache
-def adapter(model: type[BaseModel], key: str) -> TypeAdapter[Any]:
-    """What validates one field of a table by itself."""
-    return TypeAdapter(model.model_fields[key].rebuild_annotation())
+def kinds_of_items(annotation: Any, count: int) -> list[Any]:
+    """The annotation of each item of a list.
+
+    A mark of the whole list is that of items without their own, as for the accelerations along three axes.
+    """
+    types, mark = get_args(of_kind(annotation, tuple)), quantity_of(annotation, lists=False)
+    if mark:
+        types = tuple(kind if kind is ... else Annotated[kind, mark] for kind in types)
+    return [types[0]] * count if types[-1] is ... else list(types)

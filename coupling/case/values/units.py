@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
@@ -40,7 +40,7 @@ RANGES: Final = {
     "m/s": (1e-15, 1e6), "m/s^2": (1e-12, 1e9), "kg": (1e-24, 1e3), "kg/m^3": (1e-3, 1e7), "N": (1e-21, 1e6),
     "Pa": (1e-3, 1e15), "J/m^2": (1e-9, 1e3), "N/m": (1e-12, 1e12), "N/m^3": (1e-6, 1e21),
 }  # fmt: skip
-"""Between which sizes a quantity in an SI unit may be: the smallest of one that must not be 0, and the largest."""
+"""The smallest size of a positive quantity in an SI unit, and the largest of any."""
 
 LONGEST: Final = 200  # characters of a quantity as text
 _PREFIXES: Final = {"": 0, "k": 3, "M": 6, "G": 9, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
@@ -62,12 +62,17 @@ _NUMBER_AND_UNIT: Final = re.compile(
 _WRITTEN: Final = r"^\s*[+-]?\.?[0-9][0-9_.]*([eE][+-]?[0-9]+)?\s*([^0-9_.,;\s]|[0-9]+/).*$"
 
 
+class Expected(NamedTuple):
+    """Marks a field with what its value must be, in words."""
+
+    expected: str
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Marks a float as a quantity in the SI unit `unit`, a key of `DIMENSIONS`; `example` shows how to write one.
 
-    name: what it is called, where that is not its unit's name in `DIMENSIONS`.  positive: whether it must not be 0, and
-    so not all but 0 either.
+    name: what it is called, where that is not its unit's name in `DIMENSIONS`.  positive: whether it must exceed 0.
     """
 
     unit: str
@@ -132,6 +137,8 @@ class Quantity:
             raise self.refusal(text, f", {no} above {most:g} {self.unit}")
         if self.positive and 0 < abs(value) < least:
             raise self.refusal(text, f", {no} below {least:g} {self.unit}")
+        if self.positive and value <= 0:
+            raise ValueError(f"must be greater than 0; got {quoted(text)}")
         return value
 
     def validate(self, value: object, info: ValidationInfo) -> float:

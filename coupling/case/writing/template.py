@@ -11,8 +11,9 @@ from typing import Any, Final, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
-from coupling.case.table import RULES, Table, expected_of, tables_in
-from coupling.case.values import adapter, marks_of, parts_of
+from coupling.case.fields import reader_of
+from coupling.case.table import RULES, Table, expected_of, header_of, names_its_table, tables_in
+from coupling.case.values import marks_of, parts_of, quantity_of
 from coupling.case.writing.text import written
 
 HEAD: Final = """\
@@ -59,7 +60,7 @@ class _Template:
         for key, field in self._model.model_fields.items():
             first, *others = tables_in(field.annotation)
             mark = "" if field.is_required() else "#"
-            lines = [*_comment(field.description), mark + _header(key, field), *self._fields(first, mark)]
+            lines = [*_comment(field.description), mark + header_of((key,), self._model), *self._fields(first, mark)]
             for other in others:
                 lines += ["", *_comment(f"Or: {str(other.__doc__).splitlines()[0]}"), *self._fields(other, "#", first)]
                 lines += self._inner(key, other, short=True)
@@ -73,8 +74,8 @@ class _Template:
         short: without those that may be left out, too.
         """
         needed, known = _needed(table), beside.model_fields if beside else {}
-        for key, field in sorted(table.model_fields.items(), key=lambda one: not _names(one[1])):
-            stands = key in known and known[key].description == field.description and not _names(field)
+        for key, field in sorted(table.model_fields.items(), key=lambda one: not names_its_table(one[1])):
+            stands = key in known and known[key].description == field.description and not names_its_table(field)
             if stands or (short and key not in needed) or _tables_only(field):
                 continue
             default = f"Optional, by default {_value(field)}" if _has_default(field) else "Optional"
@@ -88,14 +89,15 @@ class _Template:
                 if all(map(_tables_only, inner.model_fields.values())):
                     yield from self._inner(f"{name}.{key}", inner, short)
                     continue
-                again, header = inner in self._shown or short, _header(f"{name}.{key}", field)
+                again, brackets = inner in self._shown or short, header_of((key,), table)
                 self._shown.append(inner)
+                header = brackets.replace(key, f"{name}.{key}")
                 yield from ["", *_comment(field.description), f"#{header}", *self._fields(inner, "#", short=again)]
 
 
 def _needed(table: type[Table]) -> set[str]:
     """The fields that must be given, and the first choice where one of several must."""
-    needed = {key for key, field in table.model_fields.items() if field.is_required() or _names(field)}
+    needed = {key for key, field in table.model_fields.items() if field.is_required() or names_its_table(field)}
     needed |= {*table.in_template}
     while missing := [str(at) for at, message in _contradictions(table, needed) if message.startswith("is missing")]:
         needed |= {*missing}
@@ -104,28 +106,15 @@ def _needed(table: type[Table]) -> set[str]:
 
 def _contradictions(table: type[Table], keys: set[str]) -> list[tuple[Any, str]]:
     """What is wrong where only some keys are given, each with its example or default."""
-    fields = table.model_fields
-    values = {key: json.loads(_value(fields[key])) for key in keys if key in fields}
-    return list(table.contradictions({key: adapter(table, key).validate_python(one) for key, one in values.items()}))
-
-
-def _names(field: FieldInfo) -> bool:
-    """Whether a field only names the table that has it, as the model of a law."""
-    return (
-        get_origin(field.annotation) is not None
-        and len(get_args(field.annotation)) == 1
-        and not marks_of(field.rebuild_annotation())
-    )
+    fields = {key: field for key, field in table.model_fields.items() if key in keys}
+    readers = {key: reader_of(field.rebuild_annotation()) for key, field in fields.items()}
+    given = {key: readers[key].validate_python(json.loads(_value(field))) for key, field in fields.items()}
+    return list(table.contradictions(given))
 
 
 def _tables_only(field: FieldInfo) -> bool:
     """Whether a field is nothing but a table or several."""
     return bool(tables_in(field.annotation)) and str not in parts_of(field.annotation)
-
-
-def _header(name: str, field: FieldInfo) -> str:
-    several = any(get_origin(part) is tuple for part in parts_of(field.annotation))
-    return f"[[{name}]]" if several else f"[{name}]"
 
 
 def _comment(text: str | None) -> list[str]:
@@ -147,6 +136,8 @@ def _wanted(field: FieldInfo) -> str:
         for mark in field.metadata
         if (bound := getattr(mark, name, None)) is not None
     ]
+    if (quantity := quantity_of(field.rebuild_annotation(), lists=False)) and quantity.positive:
+        bounds.append("greater than 0")
     return ", ".join([expected_of(field), *bounds])
 
 

@@ -134,6 +134,18 @@ def test_a_case_comes_back_from_its_dump_and_from_pickling(tmp_path: Path, name:
     assert pickle.loads(pickle.dumps(case)) == case
 
 
+def test_arrays_and_numbers_of_numpy_are_taken_as_those_of_python() -> None:
+    motion, place = np.array([[0, 0], [1e-3, 1e-6], [2e-3, 0]]), np.array([1e-5, 0])
+    actuator = {"position": place, "table": motion, "repeats": np.int64(3)}
+    case = python_case(actuators=[actuator], run={"duration": np.float32(0.5), "frames": np.int32(7)})
+    assert case.actuators == (ActuatorCase(position=(1e-5, 0), table=tuple(map(tuple, motion.tolist())), repeats=3),)
+    assert (case.run.duration, case.run.frames) == (0.5, 7)
+    moved = case.vary(
+        {"part.position": np.array([1e-6, 2e-6]), "actuators.0.table.1": motion[1], "run.frames": motion.size}
+    )
+    assert moved.part.position == (1e-6, 2e-6) and moved.actuators == case.actuators and moved.run.frames == 6
+
+
 def test_a_case_is_varied() -> None:
     case = python_case(friction=CoulombCase(coefficient=0.3))  # whose class alone says which law it is
     new = case.vary({"friction.coefficient": 0.4, "actuators.*.stroke": "1 um", "part.position.1": 2e-5}, "new")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.case.values.formula import FUNCTIONS, NAMES, Amount, Choice, Condition, Formula
+from coupling.case.values.formula import FUNCTIONS, NAMES, Amount, Condition, Formula, condition
 
 TIME = Amount("s", "50 ms")
 PLACE = {"row": 2.0, "column": 3.0, "rows": 5.0, "columns": 7.0, "x": 1e-4, "y": -2e-4, "pi": math.pi}
@@ -95,8 +95,7 @@ def test_what_is_no_formula_or_has_no_value_is_refused_with_the_cause():
     ],
 )
 def test_conditions_hold_or_do_not(text, truth):
-    condition = Choice().validate(text)
-    assert isinstance(condition, Condition) and condition.holds(PLACE) is truth
+    assert isinstance(condition(text), Condition) and condition(text).holds(PLACE) is truth
 
 
 @pytest.mark.parametrize(
@@ -115,14 +114,14 @@ def test_conditions_hold_or_do_not(text, truth):
 )
 def test_what_is_no_condition(text, cause):
     with pytest.raises(ValueError, match="^must be an expression ") as caught:
-        Choice().validate(text)
+        condition(text)
     assert cause in str(caught.value)
 
 
 @pytest.mark.parametrize("text", ["row", "row % 2", "5", "row and column"])
 def test_a_number_is_no_condition(text):
     with pytest.raises(ValueError, match="is a number and not a comparison"):
-        Choice().validate(text).holds(PLACE)
+        condition(text).holds(PLACE)
 
 
 WORDS = st.sampled_from(
@@ -150,7 +149,7 @@ def test_hostile_text_gives_a_finite_number_or_the_clear_error(text):
     outcome(text)
     outcome(text + " ms")
     try:
-        assert Choice().validate(text).holds(PLACE) in (True, False)
+        assert condition(text).holds(PLACE) in (True, False)
     except ValueError as error:
         assert str(error).startswith(("must be an expression", "is ", "has ", "divides "))
 

@@ -30,6 +30,7 @@ from click.testing import CliRunner
 from active_surface.cli.program import main
 from coupling.case import (
     ActuatorCase,
+    Case,
     CaseError,
     CoulombCase,
     InputError,
@@ -176,6 +177,13 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(data)
         with pytest.raises(CaseError, match=said):
             read_case(tmp_path / name)
+    with pytest.raises(CaseError, match="the file  must be named by a path, as text; got None"):
+        read_case(None)
+    (tmp_path / "digits.toml").write_text(GOOD.replace("cycles = 5", "cycles = 0x" + "f" * 5000))
+    with pytest.raises(
+        CaseError, match="line 20  .*cycles must be at most 1e.09; got a whole number of more than 300 dig"
+    ):
+        read_case(tmp_path / "digits.toml")
     for path, said in {
         "none.toml": "the file  cannot be read: no such file or directory$",
         "tset.toml": rf"no such file or directory; did you mean {tmp_path}/test.toml\?$",
@@ -245,6 +253,7 @@ def test_meshes_are_refused_with_all_that_is_wrong(tmp_path: Path) -> None:
         assert re.match(f"2 plate.mesh {said}", problem), problem
 
 
+THIN = {"shape": "polygon", "corners": [(0, 0), (1e-4, 0), (1e-4, 1e-170)], "wafer": "100", "thickness": 1e-6}
 IN_PYTHON: list[tuple[Callable[[], object], str]] = [
     (lambda: plate(radius=None), 'radius of DiscCase must be a length such as "150 um"; got None'),
     (lambda: plate(radius=float("nan")), 'radius of DiscCase must be a length such as "150 um"; got nan, which is not'),
@@ -274,6 +283,37 @@ IN_PYTHON: list[tuple[Callable[[], object], str]] = [
         'mean "coulomb"?',
     ),
     (lambda: python_case().vary({"part.mas": 1}), "part.mas of Case must be a field of the case; part has no mas; did"),
+    (lambda: Case.model_validate(3), "of Case must be a table of its fields; got 3"),
+    (lambda: PartCase.model_validate({"mass": 3}), "position of PartCase is missing; it must be two lengths, x and y"),
+    (
+        lambda: python_case().vary("x"),
+        'changes of vary must give values by the paths of their fields, such as {"part.m',
+    ),
+    (lambda: python_case().vary({1: 2}), "changes of vary must give values by the paths of their fields, such as {"),
+    (
+        lambda: python_case().vary({"part.mass": 10**400}),
+        'part.mass of Case must be a mass such as "2e-9 kg"; got a whol',
+    ),
+    (
+        lambda: python_case().vary({"run.frames": 10**5000}),
+        "run.frames of Case must be at most 1e+06; got a whole numb",
+    ),
+    (
+        lambda: python_case().vary({"part": 3, "part.mass": 1}),
+        "part.mass of Case must be in a table or list that has i",
+    ),
+    (
+        lambda: python_case().vary({"actuators": [], "actuators.0.stroke": 1}),
+        "actuators.0.stroke of Case must be in a table or list that has it; got [] there",
+    ),
+    (
+        lambda: python_case().vary({"actuators[0].stroke": 3}),
+        "actuators[0].stroke of Case must be a field of the case; got actuators[0].stroke; write actuators.0.stroke",
+    ),
+    (
+        lambda: python_case(plate=THIN),
+        "plate.corners of Case must be at most 1000 times as long as wide; got 5e+165 ti",
+    ),
     (lambda: python_case().vary({"run": 3}), "run of Case must be a table, written [run]; got 3"),
     (
         lambda: python_case().vary({"lattice.rows": 3}),

@@ -85,7 +85,7 @@ def test_prefixed_units_and_those_of_si_are_those_of_pint() -> None:
 def test_no_quantity_is_larger_or_smaller_than_anything_here() -> None:
     for unit, (least, most) in RANGES.items():
         quantity = Quantity(unit, "1", positive=True)
-        assert quantity.parse(f"{least!r} {unit}") == least and quantity.parse(f"-{most!r} {unit}") == -most
+        assert quantity.parse(f"{least!r} {unit}") == least and Quantity(unit, "1").parse(f"-{most!r} {unit}") == -most
         above, below = f"above {most:g} {unit}", f"below {least:g} {unit}"
         for value, wrong in ((2 * most, above), (-1e300, "above"), (least / 2, below)):
             with pytest.raises(ValueError, match=f"but no .* may be {re.escape(wrong)}"):
