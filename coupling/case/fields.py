@@ -100,12 +100,11 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     same = all(end.value == first for end in ends) and isinstance(first, (int, float, str))
     base = None if not same else str(first).lower() if isinstance(first, bool) else first
     base = float(base) if kind == "number" and base is not None else base
-    return Field(path, tuple(end.location for end in ends), unit, kind, reader_of(annotation), base)
+    return Field(path, tuple(end.location for end in ends), unit, kind, _reader(annotation), base)
 
 
 @cache
-def reader_of(annotation: Any) -> TypeAdapter[Any]:
-    """What validates a value by the annotation of its field alone."""
+def _reader(annotation: Any) -> TypeAdapter[Any]:
     return TypeAdapter(annotation)
 
 

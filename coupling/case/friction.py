@@ -5,29 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, StrictFloat, Tag
 
 from coupling.case.table import Contradictions, Faults, Table, named, tag
 from coupling.case.values import (
-    Expected,
     FileBeside,
     Force,
+    Listed,
     PositiveArea,
     PositiveLength,
     PositivePressure,
     Quantity,
     SurfaceEnergy,
     by_line,
-    quoted,
     read_columns,
     unreadable,
 )
 from particle import PAPER_PLASTICITY_INDEX, point_mistakes
 from particle import KogutEtsionInput as Default
 
-_SEVERAL: Final = Expected('a list of forces such as ["-1 uN", "0 N", "5 uN"]')
+_SEVERAL: Final = Listed('a list of forces such as ["-1 uN", "0 N", "5 uN"]')
 
 
 def _plasticity_index(data: dict[str, Any]) -> float:
@@ -48,7 +47,7 @@ class KogutEtsionCase(Table):
     hardness: PositivePressure = Default.hardness
     """The hardness of the softer material."""
     poisson_ratio: StrictFloat = Field(default=Default.poisson_ratio, ge=0, lt=0.5)
-    """That of the softer material."""
+    """Poisson's ratio of the softer material."""
     adhesion_energy: SurfaceEnergy = Default.adhesion_energy
     """The work of adhesion of the two surfaces."""
     plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, ge=0.001, le=1000, examples=[2.5])
@@ -94,7 +93,7 @@ class CoulombCase(Table):
     adhesion: Force = Field(default=0.0, ge=0)
     """A force added to the load; the part comes off where it is pulled harder."""
     static_coefficient: StrictFloat | None = Field(default=None, ge=0, le=1e6, examples=[0.4])
-    """The same while the part rests; without it as while it slides."""
+    """Friction force over load while the part rests; without it as while it slides."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -107,20 +106,16 @@ class CoulombCase(Table):
             yield "static_coefficient", f"must not be given with coefficient = 0; got {static:g}"
 
 
-def _several(value: object) -> object:
-    if not isinstance(value, (list, tuple)):
-        raise ValueError(f"must be {_SEVERAL.expected}; got {quoted(value)}")
-    return value
-
-
-Forces = Annotated[tuple[Force, ...], BeforeValidator(_several), _SEVERAL]
+Forces = Annotated[tuple[Force, ...], _SEVERAL]
 
 
 class TableCase(Table):
-    """Friction measured at points: `limits` over the net `loads`, in N; `file` holds both in place of the two.
+    """Friction measured at points: `limits` over the net `loads`, in N; `file` has both instead.
 
     The file is read when a case is made, which then has its points and no `file`.
     """
+
+    in_template: ClassVar[tuple[str, ...]] = ("loads", "limits")
 
     model: Literal["table"] = "table"
     """The law: as measured at points."""
@@ -131,7 +126,7 @@ class TableCase(Table):
     static_ratio: StrictFloat = Field(default=1.0, ge=1, le=1e6)
     """The limit at rest over that of sliding."""
     file: FileBeside | None = Field(default=None, examples=["friction.csv"])
-    """A CSV file with a column of each, in place of the two lists, beside the case file."""
+    """A CSV file with a column of each, instead of the two lists, beside the case file."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -139,7 +134,7 @@ class TableCase(Table):
             for name in {"loads", "limits"} & given.keys():
                 yield name, "must not be given with a file, which has the points"
         elif "loads" not in given:
-            yield "loads", f'is missing; it must be {_SEVERAL.expected}, or have file = "friction.csv" in its place'
+            yield "loads", f'is missing; it must be {_SEVERAL.expected}, or use file = "friction.csv" instead'
         elif "limits" not in given:
             yield "limits", "is missing; it must be as many forces as the loads"
         else:
@@ -172,8 +167,7 @@ def has_known_law(friction: FrictionCase) -> bool:
     """Whether a valid table certainly has a friction law; of Kogut and Etsion's only those with default numbers."""
     if not isinstance(friction, KogutEtsionCase):
         return True
-    index = _plasticity_index({"preset": friction.preset})
-    return friction == KogutEtsionCase(preset=friction.preset).model_copy(update={"plasticity_index": index})
+    return friction == KogutEtsionCase(preset=friction.preset)
 
 
 _LAWS: Final = {"kogut-etsion": KogutEtsionCase, "constant": ConstantCase, "coulomb": CoulombCase, "table": TableCase}

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Self, get_args, get_origin
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -20,9 +20,8 @@ from pydantic import (
     ValidationInfo,
     model_validator,
 )
-from pydantic.fields import FieldInfo
 
-from coupling.case.values import marks_of, parts_of, quoted
+from coupling.case.values import expected_of, names_its_table, one_of, parts_of, quoted, tables_in
 from coupling.suggestion import near
 
 if TYPE_CHECKING:
@@ -110,7 +109,7 @@ class Table(BaseModel, metaclass=_Refusing):
     whole_file: ClassVar[bool] = False
     """Whether it is all that a file holds."""
     in_template: ClassVar[tuple[str, ...]] = ()
-    """Keys that a template states although a table may do without them."""
+    """Keys that a template states although a table may do without them, as the first of several choices."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -148,23 +147,16 @@ class Table(BaseModel, metaclass=_Refusing):
 def stated(table: Table) -> dict[str, Any]:
     """The values of a table, by their keys, that are not what they would be anyway."""
     values = vars(table)
-    found = {key: value for key, usual in _usual(type(table)).items() if (value := values[key]) not in (None, usual)}
-    for key, field in _made(type(table)):
-        if found.get(key) == field.get_default(call_default_factory=True, validated_data=values):
-            del found[key]
-    return found
+    usual = _usual(type(table)).items()
+    return {key: value for key, of in usual if (value := values[key]) is not None and value != of(values)}
 
 
 @cache
-def _usual(model: type[Table]) -> dict[str, Any]:
-    """What each field is where it is not given; None of those that are always stated."""
-    return {key: None if names_its_table(field) else field.default for key, field in model.model_fields.items()}
-
-
-@cache
-def _made(model: type[Table]) -> list[tuple[str, FieldInfo]]:
-    """The fields whose defaults follow from others."""
-    return [(key, field) for key, field in model.model_fields.items() if field.default_factory]
+def _usual(model: type[Table]) -> dict[str, Callable[[Any], Any]]:
+    """What gives the value of each field where it is not given, from all values; None for those always stated."""
+    usual = {key: None if names_its_table(field) else field.default for key, field in model.model_fields.items()}
+    made: dict[str, Any] = {key: field.default_factory for key, field in model.model_fields.items()}
+    return {key: made[key] or (lambda _, value=value: value) for key, value in usual.items()}
 
 
 def tag(name: str) -> str:
@@ -226,12 +218,6 @@ def location_text(location: Location) -> str:
     """The name of the field at a location, which counts from 0: actuators[0].stroke."""
     named = (key if isinstance(key, int) or re.fullmatch(r"[\w-]+", key) else quoted(key) for key in location)
     return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in named).lstrip(".")
-
-
-def one_of(choices: Iterable[str]) -> str:
-    """Choices in quotes, joined by commas and "or"."""
-    *others, last = (f'"{choice}"' for choice in choices)
-    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _meant(value: object, choices: Iterable[str]) -> str:
@@ -300,24 +286,3 @@ def _table_at(location: tuple[Any, ...], root: type[BaseModel]) -> tuple[type[Ba
             table = next((inner for part in tagged for inner in tables_in(part)), table)
     name = ".".join(names)
     return table, f"[[{name}]]" if several else f"[{name}]" if name else ""
-
-
-def tables_in(annotation: object) -> list[type[Table]]:
-    """The tables that an annotation is made of, in its order."""
-    return [part for part in parts_of(annotation) if isinstance(part, type) and issubclass(part, Table)]
-
-
-def names_its_table(field: FieldInfo) -> bool:
-    """Whether a field has one choice and so only says which table has it, as the model of a law."""
-    return get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1
-
-
-def expected_of(field: FieldInfo) -> str:
-    """What a value of a field must be, in words."""
-    annotation = field.rebuild_annotation()
-    if wanted := next((str(mark.expected) for mark in marks_of(annotation) if hasattr(mark, "expected")), ""):
-        return wanted
-    kinds = parts_of(annotation)
-    choices = next((get_args(kind) for kind in kinds if get_origin(kind) is Literal), ())
-    words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
-    return one_of(choices) if choices else next((word for kind, word in words.items() if kind in kinds), "a value")

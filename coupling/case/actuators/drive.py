@@ -15,6 +15,7 @@ from coupling.case.values import (
     Force,
     Frequency,
     Length,
+    Listed,
     Point,
     PositiveForce,
     PositiveLength,
@@ -48,9 +49,9 @@ def _ramp(value: float) -> float:
     raise ValueError(f"must be {_RAMP}; got {quoted(value)}")
 
 
-def _points(value: object, handler: Any) -> object:
+def _points(value: Any, handler: Any) -> object:
     """Points in time, whose times increase from 0."""
-    if not isinstance(value, (list, tuple)) or len(value) < 2 or not all(map(_is_pair, value)):
+    if not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in value):
         raise ValueError(f"must be {_POINTS}; got {quoted(value)}")
     points = handler(value)
     times = [time for time, _ in points]
@@ -63,19 +64,17 @@ def _points(value: object, handler: Any) -> object:
     return points
 
 
-def _is_pair(value: object) -> bool:
-    return isinstance(value, (list, tuple)) and len(value) == 2
-
-
 Cycle = Literal["up-down", "up", "sine", "cosine"]
 Ramp = Annotated[StrictFloat, AfterValidator(_ramp), Expected(_RAMP)]
-Points = Annotated[tuple[tuple[Time, Length], ...], WrapValidator(_points), Expected(_POINTS)]
+Points = Annotated[tuple[tuple[Time, Length], ...], WrapValidator(_points), Listed(_POINTS, 2)]
 _PASSES: Final = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PASSES}, {"const": ENDLESS}]}
 Repeats = Annotated[int | Literal["endless"], PlainValidator(_repeats), Expected(_REPEATS), WithJsonSchema(_PASSES)]
 
 
 class SegmentCase(Table):
-    """A part of a schedule, in m, Hz and s; a hold has only a `dwell`."""
+    """A part of a schedule, in m, Hz and s; with cycle = "hold" it has only a `dwell`."""
+
+    in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises from where it is; negative: down. Not with "hold"."""
@@ -108,6 +107,7 @@ class SegmentCase(Table):
 class DriveCase(Table):
     """A drive over time, in m, Hz and s: a `stroke` with a `frequency`, a `table`, or `segments`, a schedule."""
 
+    in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
     owner: ClassVar[str] = "an actuator"
 
     stroke: Length | None = Field(default=None, examples=["50 um"])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import (
@@ -13,12 +14,11 @@ from pydantic import (
     StrictBool,
     StrictFloat,
     Tag,
-    ValidationInfo,
     WrapValidator,
     field_validator,
 )
 
-from coupling.case.table import Contradictions, Faults, Table, tag
+from coupling.case.table import Contradictions, Table, tag
 from coupling.case.values import (
     Angle,
     Density,
@@ -29,7 +29,6 @@ from coupling.case.values import (
     PositiveLength,
     PositivePressure,
     Pressure,
-    Quantity,
     Tension,
     quoted,
 )
@@ -62,34 +61,29 @@ InPlaneSupports = Annotated[
 _RATIOS: Final = Expected(
     'a ratio from 0 to below 1, or pairs of a frequency and a ratio, such as [["20 kHz", 0.02], ["80 kHz", 0.01]]'
 )
-_FREQUENCY: Final = Quantity("Hz", "300 Hz")
 
 
-def _ratios(value: object, _: object, info: ValidationInfo) -> float | tuple[tuple[float, float], ...]:
+def _ratios(value: object, handler: Callable[[object], Any]) -> Any:
     """A damping ratio, or pairs of a frequency and the ratio there."""
-    if _is_ratio(value):
-        return float(value)  # type: ignore[arg-type]
-    pairs = value if isinstance(value, (list, tuple)) else ()
+    pairs = value if isinstance(value, (list, tuple)) else [[0, value]]
     if not pairs or not all(isinstance(one, (list, tuple)) and len(one) == 2 and _is_ratio(one[1]) for one in pairs):
         raise ValueError(f"must be {_RATIOS.expected}; got {quoted(value)}")
-    found = tuple((_frequency(k, pair[0], info), float(pair[1])) for k, pair in enumerate(pairs))
-    if any(high <= low for (low, _), (high, _) in zip(((0.0, 0.0), *found), found, strict=False)):
-        raise ValueError(f"must have increasing, positive frequencies; got {quoted(value)}")
+    found = handler(value)
+    if isinstance(found, tuple) and any(high <= low for (low, _), (high, _) in pairwise(found)):
+        raise ValueError(f"must have increasing frequencies; got {quoted(value)}")
     return found
-
-
-def _frequency(k: int, value: object, info: ValidationInfo) -> float:
-    try:
-        return _FREQUENCY.validate(value, info)
-    except ValueError as error:
-        raise Faults([((k, 0), str(error))]) from None
 
 
 def _is_ratio(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1
 
 
-DampingRatios = Annotated[StrictFloat | tuple[tuple[Frequency, StrictFloat], ...], WrapValidator(_ratios), _RATIOS]
+DampingRatios = Annotated[
+    Annotated[StrictFloat, Tag(_ONE)] | Annotated[tuple[tuple[Frequency, StrictFloat], ...], Tag(_EACH)],
+    Discriminator(lambda value: _EACH if isinstance(value, (list, tuple)) else _ONE),
+    WrapValidator(_ratios),
+    _RATIOS,
+]
 
 
 class PlateCase(Table, ABC):
@@ -97,19 +91,20 @@ class PlateCase(Table, ABC):
 
     outlined_by: ClassVar[str] = "shape"
     """The key at which a mistake in the outline as a whole is reported."""
+    in_template: ClassVar[tuple[str, ...]] = ("youngs_modulus", "poisson_ratio")
 
     supports: Supports = "clamped"
-    """How the whole rim is held, or a table with how each boundary is; those left out are free."""
+    """The support of the whole rim, or a table with that of each boundary; those left out are free."""
     theory: Theory = "linear"
     """Whether the plate only bends, or also stretches as it deflects."""
     in_plane_supports: InPlaneSupports = "immovable"
-    """How boundaries that are not free are held in the plane, or a table with how each is; those left out can move."""
+    """The in-plane support of boundaries that are not free, or a table with that of each; those left out can move."""
     youngs_modulus: PositivePressure | None = None
     """Young's modulus, of an isotropic plate."""
     poisson_ratio: StrictFloat | None = Field(default=None, ge=0, lt=0.5, examples=[0.3])
     """Poisson's ratio, of an isotropic plate."""
     wafer: Wafer | None = Field(default=None, examples=["100"])
-    """The plane in which the plate is cut from a cubic crystal, in place of a Young's modulus and a Poisson's ratio."""
+    """The plane in which the plate is cut from a cubic crystal, instead of a Young's modulus and a Poisson's ratio."""
     wafer_angle: Angle = Field(default=0.0, examples=["0 deg"])
     """From x to a direction <110> of the crystal, along which a (100) wafer has its primary flat."""
     c11: PositivePressure = SILICON[0]
@@ -180,7 +175,7 @@ def _material(given: Mapping[str, Any]) -> Contradictions:
     if "wafer" not in given:
         for key, what in isotropic.items():
             if key not in given:
-                yield key, f'is missing; it must be {what}, or have a wafer such as "100" in its place'
+                yield key, f'is missing; it must be {what}, or use a wafer such as "100" instead'
         for key in ("wafer_angle", *CONSTANTS):
             if key in given:
                 yield key, "must not be given without a wafer"

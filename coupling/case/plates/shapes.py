@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictInt, StrictStr
 
 from coupling.case.plates.plate import PlateCase
 from coupling.case.plates.platform import PlatformCase
-from coupling.case.table import Contradictions, named, tag
-from coupling.case.values import Angle, Expected, FileBeside, Point, PositiveLength, length_text, quoted
+from coupling.case.table import Contradictions, Table, named, tag
+from coupling.case.values import Angle, FileBeside, Listed, Point, PositiveLength, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -147,18 +147,6 @@ class EllipseCase(ShapeCase):
 _POINTS: Final = 'three points or more, such as [["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
 
 
-def _corners(corners: object) -> object:
-    if not isinstance(corners, (list, tuple)) or len(corners) < 3:
-        raise ValueError(f"must be {_POINTS}; got {quoted(corners)}")
-    return corners
-
-
-def _side_names(sides: object) -> object:
-    if not isinstance(sides, (list, tuple)):
-        raise ValueError(f"must be a list of names, one a side; got {quoted(sides)}")
-    return sides
-
-
 class PolygonCase(ShapeCase):
     """A polygon."""
 
@@ -166,13 +154,11 @@ class PolygonCase(ShapeCase):
 
     shape: Literal["polygon"]
     """A polygon, which may turn inwards; its boundary is rim, or by sides."""
-    corners: Annotated[
-        tuple[Point, ...],
-        BeforeValidator(_corners),
-        Expected(f"{_POINTS}, or have a number of sides and a radius in their place"),
-    ] = Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
+    corners: Annotated[tuple[Point, ...], Listed(f"{_POINTS}, or use a number of sides and a radius instead", 3)] = (
+        Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
+    )
     """Its corners, three or more, in either sense."""
-    sides: Annotated[tuple[StrictStr, ...], BeforeValidator(_side_names)] | None = Field(
+    sides: Annotated[tuple[StrictStr, ...], Listed("a list of names, one a side")] | None = Field(
         default=None, examples=[["base", "flank", "flank"]]
     )
     """A name for each side, the first from the first corner to the second; sides of one name are one boundary."""
@@ -244,18 +230,14 @@ class MeshCase(PlateCase):
 
 
 PLATFORM: Final = 'shape = "platform"'
-_SHAPES: Final = {
-    "disc": DiscCase, "rectangle": RectangleCase, "annulus": AnnulusCase, "ellipse": EllipseCase,
-    "polygon": PolygonCase, "regular": RegularPolygonCase, "platform": PlatformCase, "mesh": MeshCase,
-}  # fmt: skip
+_SHAPES: Final = ("disc", "rectangle", "annulus", "ellipse", "polygon", "platform")
 
 
 def _kind(plate: Any) -> str:
     """The tag of a plate, given as a table or as a model."""
-    if not isinstance(plate, Mapping):
-        return next((tag(name) for name, model in _SHAPES.items() if isinstance(plate, model)), tag("disc"))
-    regular = "corners" not in plate and ("radius" in plate or isinstance(plate.get("sides"), int))
-    name = plate.get("shape", "mesh")
+    table = vars(plate) if isinstance(plate, Table) else plate if isinstance(plate, Mapping) else {"shape": "disc"}
+    name = table.get("shape", "mesh")
+    regular = "corners" not in table and ("radius" in table or isinstance(table.get("sides"), int))
     return tag("regular" if name == "polygon" and regular else name)
 
 
@@ -269,6 +251,6 @@ AnyPlate = Annotated[
     | Annotated[PlatformCase, Tag(tag("platform"))]
     | Annotated[MeshCase, Tag(tag("mesh"))],
     Discriminator(_kind),
-    BeforeValidator(named("shape", ("disc", "rectangle", "annulus", "ellipse", "polygon", "platform"), "mesh")),
+    BeforeValidator(named("shape", _SHAPES, "mesh")),
 ]
 """What a case may have for a plate: one of the plates, or a platform."""

@@ -22,6 +22,7 @@ from coupling.case.values.quantities import (
     Frequency,
     Gravity,
     Length,
+    Listed,
     LoadPressure,
     Mass,
     Point,
@@ -36,11 +37,15 @@ from coupling.case.values.quantities import (
     Tension,
     Time,
     Velocity,
+    expected_of,
     kinds_of_items,
     marks_of,
+    names_its_table,
     of_kind,
+    one_of,
     parts_of,
     quantity_of,
+    tables_in,
 )
 from coupling.case.values.units import (
     DIMENSIONS,

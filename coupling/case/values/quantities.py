@@ -7,17 +7,21 @@ with a unit of the right dimension. A number without a unit is taken as SI, or r
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Final, get_args, get_origin
+from typing import Annotated, Any, Final, Literal, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
+    BaseModel,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     StrictStr,
     ValidationInfo,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.values.units import Quantity, quoted
@@ -27,20 +31,16 @@ _COUNTS: Final = {2: "two", 3: "three"}
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Marks a tuple as the x and y of a point or vector; `name` is what the two are, `example` one of them."""
+class Listed:
+    """Marks a tuple with what it must be, in words, and with how many items it may have."""
 
-    name: str
-    example: str
-
-    @property
-    def expected(self) -> str:
-        """What a value must be, in words: two lengths, x and y, such as ["100 um", "100 um"]."""
-        return f"two {self.name}, x and y, such as {quoted([self.example, self.example])}"
+    expected: str
+    least: int = 0
+    most: float = math.inf
 
     def validate(self, value: object) -> object:
-        """Return `value`; ValueError unless it is a list or tuple of two."""
-        if not isinstance(value, (list, tuple)) or len(value) != 2:
+        """Return a list or tuple with so many items; ValueError for all else."""
+        if not isinstance(value, (list, tuple)) or not self.least <= len(value) <= self.most:
             raise ValueError(f"must be {self.expected}; got {quoted(value)}")
         return value
 
@@ -102,8 +102,8 @@ PositiveArea = Annotated[float, Quantity("m^2", "1e4 um^2", positive=True)]
 PositiveTime = Annotated[float, Quantity("s", "50 ms", positive=True)]
 PositiveForce = Annotated[float, Quantity("N", "2 uN", positive=True)]
 PositivePressure = Annotated[float, Quantity("Pa", "169 GPa", positive=True)]
-Point = Annotated[tuple[Length, Length], Pair("lengths", "100 um")]
-Velocity = Annotated[tuple[Speed, Speed], Pair("velocities", "0 m/s")]
+Point = Annotated[tuple[Length, Length], Listed('two lengths, x and y, such as ["100 um", "100 um"]', 2, 2)]
+Velocity = Annotated[tuple[Speed, Speed], Listed('two velocities, x and y, such as ["0 m/s", "0 m/s"]', 2, 2)]
 FileBeside = Annotated[StrictStr, AfterValidator(_beside)]
 
 
@@ -138,3 +138,30 @@ def kinds_of_items(annotation: Any, count: int) -> list[Any]:
     if mark:
         types = tuple(kind if kind is ... else Annotated[kind, mark] for kind in types)
     return [types[0]] * count if types[-1] is ... else list(types)
+
+
+def tables_in(annotation: object) -> list[Any]:
+    """The tables that an annotation is made of, in its order."""
+    return [part for part in parts_of(annotation) if isinstance(part, type) and issubclass(part, BaseModel)]
+
+
+def names_its_table(field: FieldInfo) -> bool:
+    """Whether a field has one choice and so only says which table has it, as the model of a law."""
+    return get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1
+
+
+def expected_of(field: FieldInfo) -> str:
+    """What a value of a field must be, in words."""
+    annotation = field.rebuild_annotation()
+    if wanted := next((str(mark.expected) for mark in marks_of(annotation) if hasattr(mark, "expected")), ""):
+        return wanted
+    kinds = parts_of(annotation)
+    choices = next((get_args(kind) for kind in kinds if get_origin(kind) is Literal), ())
+    words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+    return one_of(choices) if choices else next((word for kind, word in words.items() if kind in kinds), "a value")
+
+
+def one_of(choices: Iterable[str]) -> str:
+    """Choices in quotes, joined by commas and "or"."""
+    *others, last = (f'"{choice}"' for choice in choices)
+    return f"{', '.join(others)} or {last}" if others else last

@@ -11,7 +11,6 @@ from typing import Any, Final, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
-from coupling.case.fields import reader_of
 from coupling.case.table import RULES, Table, expected_of, header_of, names_its_table, tables_in
 from coupling.case.values import marks_of, parts_of, quantity_of
 from coupling.case.writing.text import written
@@ -97,19 +96,8 @@ class _Template:
 
 def _needed(table: type[Table]) -> set[str]:
     """The fields that must be given, and the first choice where one of several must."""
-    needed = {key for key, field in table.model_fields.items() if field.is_required() or names_its_table(field)}
-    needed |= {*table.in_template}
-    while missing := [str(at) for at, message in _contradictions(table, needed) if message.startswith("is missing")]:
-        needed |= {*missing}
-    return needed
-
-
-def _contradictions(table: type[Table], keys: set[str]) -> list[tuple[Any, str]]:
-    """What is wrong where only some keys are given, each with its example or default."""
-    fields = {key: field for key, field in table.model_fields.items() if key in keys}
-    readers = {key: reader_of(field.rebuild_annotation()) for key, field in fields.items()}
-    given = {key: readers[key].validate_python(json.loads(_value(field))) for key, field in fields.items()}
-    return list(table.contradictions(given))
+    fields = table.model_fields.items()
+    return {key for key, field in fields if field.is_required() or names_its_table(field)} | {*table.in_template}
 
 
 def _tables_only(field: FieldInfo) -> bool:
