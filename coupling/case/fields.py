@@ -89,14 +89,12 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     if path in FIXED:
         raise ValueError(f"cannot be varied: {path} {FIXED[path]}")
     ends = list(_ends(case, lattice, path))
-    kind, annotation = _kind(ends[0].annotation), ends[0].annotation
-    if kind is None and type(ends[0].value) in (str, float):  # one support of several, or one damping ratio
-        kind = "text" if isinstance(ends[0].value, str) else "number"
+    first, annotation = ends[0].value, ends[0].annotation
+    kind = _kind(annotation, first)
     if kind is None:
         raise ValueError(f"must be a single value; got {path}, which is a list or table; name one in it")
-    quantity = quantity_of(annotation, lists=_kind(annotation) is not None)
+    quantity = quantity_of(annotation, lists=False)
     unit = quantity.unit if quantity else "" if kind == "text" else "1"
-    first = ends[0].value
     same = all(end.value == first for end in ends) and isinstance(first, (int, float, str))
     base = None if not same else str(first).lower() if isinstance(first, bool) else first
     base = float(base) if kind == "number" and base is not None else base
@@ -176,13 +174,13 @@ def _known(key: str, known: Mapping[str, Any]) -> str:
     return f"did you mean {meant}?" if meant else f"it has {', '.join(known)}"
 
 
-def _kind(annotation: Any) -> Literal["number", "whole", "text"] | None:
-    """What a value is; None where it is several."""
+def _kind(annotation: Any, value: Any) -> Literal["number", "whole", "text"] | None:
+    """What a value is, by the annotation of its field, or by itself where that may be a list or table; None: those."""
     parts = parts_of(annotation)
     if any(isinstance(mark, Directed) for mark in marks_of(annotation)):
         return "number"
     if tables_in(annotation) or any(get_origin(part) in (tuple, dict) for part in parts):
-        return None
+        return "text" if isinstance(value, str) else "number" if isinstance(value, float) else None
     return "number" if float in parts else "whole" if int in parts else "text"
 
 

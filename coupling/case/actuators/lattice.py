@@ -21,6 +21,7 @@ from coupling.case.values import (
     Quantity,
     Where,
     length_text,
+    quantity_of,
     quoted,
 )
 
@@ -32,16 +33,6 @@ Place = tuple[float, float]
 SAME_PLACE: Final = 1e-9
 """Places closer than this fraction of half the plate's longer side count as one."""
 MAX_PLACES: Final = 100_000  # actuators
-AMOUNTS: Final = {
-    "stroke": Amount("m", "150 um"),
-    "force": Amount("N", "2 uN"),
-    "stiffness": Amount("N/m", "1e4 N/m", positive=True),
-    "frequency": Amount("Hz", "300 Hz", positive=True),
-    "dwell": Amount("s", "50 ms", from_0=True),
-    "delay": Amount("s", "50 ms", from_0=True),
-    "phase": Amount("rad", "90 deg"),
-}
-"""The keys of an actuator that may be formulas."""
 
 
 class _Places(Table):
@@ -93,19 +84,21 @@ class LatticeCase(DriveCase, Pushing, _Places):
     `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
     """
 
-    force: Annotated[float | Formula, AMOUNTS["force"]] | None = Field(default=None, examples=["1 mN"])  # type: ignore[assignment]
+    force: Annotated[float | Formula, Amount("N", "2 uN")] | None = Field(default=None, examples=["1 mN"])  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit."""
-    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"]] | None = None  # type: ignore[assignment]
+    stiffness: Annotated[float | Formula, Amount("N/m", "1e4 N/m", positive=True)] | None = None  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit."""
-    stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = Field(default=None, examples=["5 um"])  # type: ignore[assignment]
+    stroke: Annotated[float | Formula, Amount("m", "150 um")] | None = Field(default=None, examples=["5 um"])  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit."""
-    frequency: Annotated[float | Formula, AMOUNTS["frequency"]] | None = None  # type: ignore[assignment]
+    frequency: Annotated[float | Formula, Amount("Hz", "300 Hz", positive=True)] | None = None  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit."""
-    dwell: Annotated[float | Formula, AMOUNTS["dwell"]] = 0.0  # type: ignore[assignment]
+    dwell: Annotated[float | Formula, Amount("s", "50 ms", from_0=True)] = 0.0  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit."""
-    phase: Annotated[float | Formula, AMOUNTS["phase"]] = Field(default=0.0, examples=["60 * column deg"])  # type: ignore[assignment]
+    phase: Annotated[float | Formula, Amount("rad", "90 deg")] = Field(default=0.0, examples=["60 * column deg"])  # type: ignore[assignment]
     """As of an actuator, or an expression and its unit: a wave over the lattice."""
-    delay: Annotated[float | Formula, AMOUNTS["delay"]] = Field(default=0.0, examples=["0.05 * (row + column) ms"])  # type: ignore[assignment]
+    delay: Annotated[float | Formula, Amount("s", "50 ms", from_0=True)] = Field(  # type: ignore[assignment]
+        default=0.0, examples=["0.05 * (row + column) ms"]
+    )
     """As of an actuator, or an expression and its unit."""
 
     @classmethod
@@ -117,6 +110,14 @@ class LatticeCase(DriveCase, Pushing, _Places):
         if count > MAX_PLACES:
             shorter, longer = sorted(("rows", "columns"), key=given.__getitem__)
             yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
+
+
+AMOUNTS: Final = {
+    key: mark
+    for key, field in LatticeCase.model_fields.items()
+    if isinstance(mark := quantity_of(field.rebuild_annotation()), Amount)
+}
+"""The keys of an actuator that may be formulas."""
 
 
 class Spot(NamedTuple):

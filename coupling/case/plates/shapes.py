@@ -53,8 +53,8 @@ class ShapeCase(PlateCase):
         times = area / width / width if width else 0.0  # without a width the corners are wrong, which the mesh says
         if times > MAX_SLENDER:
             raise ValueError(f"must be at most {MAX_SLENDER:g} times as long as wide; got {times:.4g} times")
-        own = ("shape", self.shape), *self._own().items()  # type: ignore[attr-defined]
-        return _coarse(type(self), own, width / 2 or 1.0)
+        name, own = self._made_by
+        return _kept_mesh(name, cell_size=width / 2 or 1.0, **own)
 
     @property
     def min_cell_size(self) -> float:
@@ -63,20 +63,25 @@ class ShapeCase(PlateCase):
 
     def mesh_of(self, cell_size: float) -> PlateMesh:
         """The mesh with cells of a size [m]."""
-        import meshes  # Here, because reading a case is to be quick.
+        name, own = self._made_by
+        return _mesh(name, cell_size=cell_size, **own)
 
-        return getattr(meshes, self.shape)(*self._own().values(), cell_size)  # type: ignore[attr-defined]
+    @property
+    def _made_by(self) -> tuple[str, dict[str, Any]]:
+        """The function of `meshes` for it, and the arguments that shape it."""
+        own = {key: getattr(self, key) for key in type(self).model_fields if key not in ShapeCase.model_fields}
+        return own.pop("shape"), own
 
-    def _own(self) -> dict[str, Any]:
-        """The keys and values that shape it."""
-        own = [key for key in type(self).model_fields if key not in ShapeCase.model_fields and key != "shape"]
-        return {key: getattr(self, key) for key in own}
+
+def _mesh(name: str, **shape: Any) -> PlateMesh:
+    import meshes  # Here, because reading a case is to be quick.
+
+    mesh: PlateMesh = getattr(meshes, name)(**shape)
+    return mesh
 
 
-@lru_cache(16)
-def _coarse(shape: type[ShapeCase], own: tuple[tuple[str, Any], ...], cell_size: float) -> PlateMesh:
-    """The mesh of a shape, kept for plates that differ in other keys only."""
-    return shape.model_construct(**dict(own)).mesh_of(cell_size)
+_kept_mesh = lru_cache(16)(_mesh)
+"""The mesh of a shape, kept for plates that differ in other keys only."""
 
 
 class DiscCase(ShapeCase):
@@ -176,10 +181,9 @@ class PolygonCase(ShapeCase):
         ahead = zip(self.corners, self.corners[1:] + self.corners[:1], strict=True)
         return width, abs(sum(x * v - u * y for (x, y), (u, v) in ahead)) / 2
 
-    def mesh_of(self, cell_size: float) -> PlateMesh:
-        import meshes
-
-        return meshes.polygon(self.corners, cell_size, self.sides)
+    @property
+    def _made_by(self) -> tuple[str, dict[str, Any]]:
+        return "polygon", {"corners": self.corners, "names": self.sides}
 
 
 class RegularPolygonCase(ShapeCase):
@@ -200,10 +204,9 @@ class RegularPolygonCase(ShapeCase):
         width = self.radius * math.cos(half) + self.radius * (1.0 if self.sides % 2 else math.cos(half))
         return width, self.sides * self.radius**2 * math.sin(half) * math.cos(half)
 
-    def mesh_of(self, cell_size: float) -> PlateMesh:
-        import meshes
-
-        return meshes.regular_polygon(self.sides, self.radius, cell_size, self.rotation)
+    @property
+    def _made_by(self) -> tuple[str, dict[str, Any]]:
+        return "regular_polygon", super()._made_by[1]
 
 
 class MeshCase(PlateCase):

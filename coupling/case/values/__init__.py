@@ -49,8 +49,6 @@ from coupling.case.values.quantities import (
 )
 from coupling.case.values.units import (
     DIMENSIONS,
-    LONGEST,
-    RANGES,
     UNITS_REQUIRED,
     Expected,
     Quantity,

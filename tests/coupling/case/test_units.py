@@ -12,7 +12,7 @@ import pytest
 from case_files import changed, problems
 
 from coupling.case import Quantity
-from coupling.case.values import RANGES, units
+from coupling.case.values import units
 
 LENGTHS = """
 "150 Hz" => , a frequency
@@ -83,7 +83,7 @@ def test_prefixed_units_and_those_of_si_are_those_of_pint() -> None:
 
 
 def test_no_quantity_is_larger_or_smaller_than_anything_here() -> None:
-    for unit, (least, most) in RANGES.items():
+    for unit, (least, most) in units.RANGES.items():
         quantity = Quantity(unit, "1", positive=True)
         assert quantity.parse(f"{least!r} {unit}") == least and Quantity(unit, "1").parse(f"-{most!r} {unit}") == -most
         above, below = f"above {most:g} {unit}", f"below {least:g} {unit}"
