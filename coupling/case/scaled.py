@@ -23,6 +23,9 @@ def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = Fal
     if frequency == 1 and stroke == 1:
         return case
 
+    def rate(value: float) -> float:
+        return final(value * frequency)
+
     def time(value: float) -> float:
         return final(value / frequency)
 
@@ -30,12 +33,9 @@ def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = Fal
         return final(value * stroke)
 
     def scaled(drive: Drive) -> Drive:
-        scales = {"frequency": lambda value: final(value * frequency), "delay": time, "dwell": time} | dict.fromkeys(
-            ("stroke", "force"), height
-        )
-        update: dict[str, Any] = {
-            key: scale(value) for key, scale in scales.items() if (value := getattr(drive, key, None)) is not None
-        }
+        scales = {"frequency": rate, "delay": time, "dwell": time, "stroke": height, "force": height}
+        given = {key: value for key in scales if (value := getattr(drive, key, None)) is not None}
+        update: dict[str, Any] = {key: scales[key](value) for key, value in given.items()}
         if table := getattr(drive, "table", None):
             update["table"] = tuple((time(moment), height(top)) for moment, top in table)
         if segments := getattr(drive, "segments", None):
@@ -49,7 +49,7 @@ def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = Fal
         axes = {axis: drive for axis, drive in case.plate.motion if drive is not None}
         motion = case.plate.motion.model_copy(update={axis: scaled(drive) for axis, drive in axes.items()})
         return case.model_copy(update={"plate": case.plate.model_copy(update={"motion": motion})})
-    return case.model_copy(update={"actuators": tuple(scaled(actuator) for actuator in case.actuators)})
+    return case.model_copy(update={"actuators": tuple(map(scaled, case.actuators))})
 
 
 def ramped_case(case: Case, ramp: float) -> Case | None:

@@ -199,10 +199,10 @@ def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[float
         except ValueError as error:
             rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
             raise ValueError(f"{rule}; {quoted(amount.text)} {error} at {spot}") from None
-        if rule := AMOUNTS[key].broken_rule(value):
-            got = f"{quoted(amount.text)} is {value / amount.scale:g} {amount.unit} at {spot}"
-            raise ValueError(f"must be {rule} for each actuator; {got}")
-        found.append(value)
+        try:
+            found.append(AMOUNTS[key].in_range(f"{value / amount.scale:g} {amount.unit}", value))
+        except ValueError as error:
+            raise ValueError(f"{error} at {spot}") from None
     return found
 
 

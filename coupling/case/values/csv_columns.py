@@ -137,29 +137,29 @@ def read_columns(
         message = f'line {line} must be a header such as "{example}"; got {quoted(", ".join(header))}'
         return MeasuredColumns({}, (), [message])
     columns, ignored, mistakes = _header(header, known)
-    there = {name for name, *_ in columns}
     got = quoted(", ".join(read.header))
     mistakes += [
-        f'must have a column {_either(names)}, as in "{example}"; got {got}' for names in needed if not there & {*names}
+        f'must have a column {_either(names)}, as in "{example}"; got {got}'
+        for names in needed
+        if not columns.keys() & {*names}
     ]
     if mistakes:
         return MeasuredColumns({}, (), [f"line {line} {mistake}" for mistake in mistakes])
     wrong = list(read.mistakes)
-    values: list[list[float]] = [[] for _ in header]
-    measured = [k for k, (name, *_) in enumerate(columns) if name not in ignored and name != "time"]
+    measured = [k for name, (k, *_) in columns.items() if name != "time"]
     rows = [row for row in read.rows if any(row[1][k].lower() not in ("", "nan") for k in measured)]
-    for number, cells in rows:
-        for (name, unit, factor), cell, column in zip(columns, cells, values, strict=True):
-            value = _number(cell)
-            if name in ignored:
-                continue
-            if value is None:
-                wrong.append((number, f"must have a finite number as {name}; got {quoted(cell)}"))
-            else:
-                column.append(known[name].value_of(cell, cell, unit) if exact else value * factor)
-    filled = {name: tuple(column) for (name, *_), column in zip(columns, values, strict=True) if name not in ignored}
-    lost = len(read.rows) - len(rows)
-    return MeasuredColumns(filled, tuple(number for number, _ in rows), first_of(by_line(wrong)), ignored, lost)
+    filled = {}
+    for name, (k, unit, factor) in columns.items():
+        numbers = [(line, cells[k], _number(cells[k])) for line, cells in rows]
+        rule = f"must have a finite number as {name}"
+        wrong += [(line, f"{rule}; got {quoted(cell)}") for line, cell, number in numbers if number is None]
+        filled[name] = tuple(
+            known[name].value_of(cell, cell, unit) if exact else number * factor
+            for _, cell, number in numbers
+            if number is not None
+        )
+    lines, lost = tuple(number for number, _ in rows), len(read.rows) - len(rows)
+    return MeasuredColumns(filled, lines, first_of(by_line(wrong)), ignored, lost)
 
 
 def by_line(wrong: Sequence[tuple[int, str]]) -> list[str]:
@@ -184,23 +184,22 @@ def first_of(mistakes: Sequence[str]) -> list[str]:
 
 def _header(
     header: Sequence[str], known: Mapping[str, Quantity]
-) -> tuple[list[tuple[str, str, float]], tuple[str, ...], list[str]]:
-    """Each column's name, unit and how much in SI units one of that is; those ignored, and what is wrong with others.
+) -> tuple[dict[str, tuple[int, str, float]], tuple[str, ...], list[str]]:
+    """Each known column's place, unit and how much in SI units one of that is; those ignored, and what is wrong.
 
     A name that looks like one that is known, and is missing, is a mistake.
     """
-    columns: list[tuple[str, str, float]] = []
+    columns: dict[str, tuple[int, str, float]] = {}
     ignored, mistakes = [], []
     there = {name_and_unit(cell)[0] for cell in header}
-    for cell in header:
+    for k, cell in enumerate(header):
         name, unit = name_and_unit(cell)
         if name not in known:
             if (like := near(name, known)) and like not in there:
                 mistakes.append(f"has a column {quoted(cell)} that is not known; did you mean {like}?")
-            columns.append((cell, "", math.nan))
             ignored.append(cell)
             continue
-        if any(name == other for other, *_ in columns):
+        if name in columns:
             mistakes.append(f"has two columns {name}")
         quantity, factor = known[name], math.nan
         try:
@@ -209,7 +208,7 @@ def _header(
             of = f"a unit of {DIMENSIONS[quantity.unit].partition(' ')[2]}"
             got = f"; got [{unit}]" if unit else ""
             mistakes.append(f'must give {name} in {of}, as in "{name} [{quantity.example.split()[-1]}]"{got}')
-        columns.append((name, unit or "", factor))
+        columns[name] = k, unit or "", factor
     return columns, tuple(ignored), mistakes
 
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, Final
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainValidator, ValidationInfo, WithJsonSchema
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainValidator, WithJsonSchema
 from pydantic_core import CoreSchema, core_schema
 from simpleeval import InvalidExpression, SimpleEval
 
-from coupling.case.values.units import RANGES, Expected, Quantity, quoted
+from coupling.case.values.units import Expected, Quantity, quoted
 from coupling.suggestion import near
 
 NAMES: Final = ("row", "column", "rows", "columns", "x", "y", "pi")
@@ -191,22 +191,16 @@ class Amount(Quantity):
             rule = "an expression and, once at its end, a unit"
             raise ValueError(f"must be {rule}; got {quoted(text)}{reason}") from None
 
-    def broken_rule(self, value: float) -> str:
-        """What a value must be at an actuator, in words; "" where it is that."""
-        least, most = RANGES[self.unit]
-        if abs(value) > most or (self.positive and 0 < abs(value) < least):
-            return f"from {least:g} to {most:g} {self.unit}"
-        return "greater than 0" if self.positive and value <= 0 else "at least 0" if self.from_0 and value < 0 else ""
-
-    def validate(self, value: object, info: ValidationInfo) -> float | Formula:  # type: ignore[override]
-        """As that of a quantity; a formula stays as it is."""
-        amount = value if isinstance(value, Formula) else super().validate(value, info)
-        if self.from_0 and isinstance(amount, float) and amount < 0:
-            raise ValueError(f"must be at least 0; got {quoted(value)}")
-        return amount
+    def in_range(self, text: object, value: float) -> float:
+        """As of a quantity, and not negative where it must not be."""
+        if self.from_0 and value < 0:
+            raise ValueError(f"must be at least 0; got {quoted(text)}")
+        return super().in_range(text, value)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.validate)
+        return core_schema.with_info_plain_validator_function(
+            lambda value, info: value if isinstance(value, Formula) else self.validate(value, info)
+        )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "string", "examples": [self.example]}

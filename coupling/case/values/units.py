@@ -95,7 +95,7 @@ class Quantity:
 
     def convert(self, text: str, number: str, unit: str) -> float:
         """Return `number` of a unit, in `self.unit`; raises ValueError as `parse` does, quoting `text`."""
-        return self._in_range(text, self.value_of(text, number, unit))
+        return self.in_range(text, self.value_of(text, number, unit))
 
     def value_of(self, text: str, number: str, unit: str) -> float:
         """The same, however large or small that is."""
@@ -129,7 +129,7 @@ class Quantity:
             raise self.refusal(text, f", {DIMENSIONS[si] if si else f'a quantity in {known:~}'}")
         return float(_registry().Quantity(Decimal(number), unit).m_as(self.unit))
 
-    def _in_range(self, text: object, value: float) -> float:
+    def in_range(self, text: object, value: float) -> float:
         """Return a value; ValueError, quoting `text`, where no such quantity can be that large or that small."""
         least, most = RANGES.get(self.unit, (0.0, math.inf))
         no = f"but no {(self.name or DIMENSIONS[self.unit]).split(' ', 1)[1]} may be"
@@ -155,7 +155,7 @@ class Quantity:
             number = math.inf
         if not math.isfinite(number):
             raise self.refusal(value, ", which is not finite")
-        return self._in_range(value, number)
+        return self.in_range(value, number)
 
     def refusal(self, value: object, reason: str = "") -> ValueError:
         """The error that says what a value must be, and that this one is not."""
