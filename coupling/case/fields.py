@@ -16,9 +16,7 @@ from coupling.case.table import Location, Table, location_text, mistakes_of, sta
 from coupling.case.tables import CaseTables
 from coupling.case.values import (
     UNITS_REQUIRED,
-    Directed,
     kinds_of_items,
-    marks_of,
     of_kind,
     parts_of,
     quantity_of,
@@ -88,7 +86,7 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
         raise ValueError(f"must be a field that changes a path; got {path}, which a sweep does not use")
     if path in FIXED:
         raise ValueError(f"cannot be varied: {path} {FIXED[path]}")
-    ends = list(_ends(case, lattice, path))
+    ends = _ends(case, lattice, path)
     first, annotation = ends[0].value, ends[0].annotation
     kind = _kind(annotation, first)
     if kind is None:
@@ -111,12 +109,12 @@ def locations_of(case: Case, lattice: Mapping[str, Any] | None, path: str) -> li
     return [end.location for end in _ends(case, lattice, path)]
 
 
-def _ends(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Iterator[_End]:
-    """Yield where a path leads to."""
+def _ends(case: Case, lattice: Mapping[str, Any] | None, path: str) -> list[_End]:
+    """Where a path leads to."""
     if "[" in path:
         dotted = re.sub(r"\[([\d*]+)\]", r".\1", path)
         raise ValueError(f"must be a field of the case; got {path}; write {dotted}")
-    first, *rest = path.split(".")
+    first, *keys = path.split(".")
     if first not in CaseTables.model_fields:
         inner = _inner(first, case)
         meant = f"did you mean {' or '.join(inner)}?" if inner else _known(first, CaseTables.model_fields)
@@ -126,36 +124,34 @@ def _ends(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Iterator[
         if not lattice:
             raise ValueError("must be a field of the case; it has no [lattice]")
         value = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
-    yield from _below(_End((first,), value, CaseTables.model_fields[first].rebuild_annotation()), rest)
+    ends = [_End((first,), value, CaseTables.model_fields[first].rebuild_annotation())]
+    for key in keys:
+        ends = [inner for end in ends for inner in _below(end, key)]
+    return ends
 
 
-def _below(end: _End, keys: list[str]) -> Iterator[_End]:
-    """Yield where keys lead to from a value."""
-    if not keys:
-        yield end
-        return
-    key, *rest = keys
-    value = end.value
+def _below(end: _End, key: str) -> Iterator[_End]:
+    """Yield what a key leads to from a value."""
+    location, value = end.location, end.value
     if isinstance(value, Table | dict):
         fields: Mapping[str, Any] = value if isinstance(value, dict) else type(value).model_fields
         if key not in fields:
-            table = location_text(end.location)
+            table = location_text(location)
             raise ValueError(f"must be a field of the case; {table} has no {key or quoted(key)}; {_known(key, fields)}")
         if isinstance(value, dict):
-            item, annotation = value[key], get_args(of_kind(end.annotation, dict))[1]
+            yield _End((*location, key), value[key], get_args(of_kind(end.annotation, dict))[1])
         else:
-            item, annotation = getattr(value, key), fields[key].rebuild_annotation()
-        yield from _below(_End((*end.location, key), item, annotation), rest)
+            yield _End((*location, key), getattr(value, key), fields[key].rebuild_annotation())
         return
     if not isinstance(value, tuple) or not value:
         has = "is not given" if value is None else "is empty" if value == () else "is a single value"
-        raise ValueError(f"must be a field of the case; its {location_text(end.location)} {has}")
+        raise ValueError(f"must be a field of the case; its {location_text(location)} {has}")
     if key != ALL and not (key.isdecimal() and int(key) < len(value)):
         counted = f"are counted from 0 to {len(value) - 1}, * for all"
-        raise ValueError(f"must be a field of the case; its {location_text(end.location)} {counted}; got {key}")
+        raise ValueError(f"must be a field of the case; its {location_text(location)} {counted}; got {key}")
     kinds = kinds_of_items(end.annotation, len(value))
     for index in range(len(value)) if key == ALL else [int(key)]:
-        yield from _below(_End((*end.location, index), value[index], kinds[index]), rest)
+        yield _End((*location, index), value[index], kinds[index])
 
 
 def _inner(key: str, case: Case) -> list[str]:
@@ -177,7 +173,7 @@ def _known(key: str, known: Mapping[str, Any]) -> str:
 def _kind(annotation: Any, value: Any) -> Literal["number", "whole", "text"] | None:
     """What a value is, by the annotation of its field, or by itself where that may be a list or table; None: those."""
     parts = parts_of(annotation)
-    if any(isinstance(mark, Directed) for mark in marks_of(annotation)):
+    if quantity_of(annotation, lists=False):
         return "number"
     if tables_in(annotation) or any(get_origin(part) in (tuple, dict) for part in parts):
         return "text" if isinstance(value, str) else "number" if isinstance(value, float) else None

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, StrictFloat, Tag
 
-from coupling.case.table import Contradictions, Faults, Table, named, tag
+from coupling.case.table import Contradictions, Faults, Table, named
 from coupling.case.values import (
     FileBeside,
     Force,
@@ -21,6 +21,7 @@ from coupling.case.values import (
     SurfaceEnergy,
     by_line,
     read_columns,
+    tag,
     unreadable,
 )
 from particle import PAPER_PLASTICITY_INDEX, point_mistakes

@@ -21,7 +21,7 @@ from pydantic import (
     model_validator,
 )
 
-from coupling.case.values import expected_of, names_its_table, one_of, parts_of, quoted, tables_in
+from coupling.case.values import TAG, expected_of, names_its_table, one_of, parts_of, quoted, tables_in
 from coupling.suggestion import near
 
 if TYPE_CHECKING:
@@ -48,9 +48,6 @@ RULES: Final = {
     "less_than_equal": "at most {le:.4g}",
 }
 """What a value must be, by the type of pydantic's error."""
-
-
-_TAG: Final = "\ue000"  # a character that no key has
 
 
 class Faults(ValueError):
@@ -159,11 +156,6 @@ def _usual(model: type[Table]) -> dict[str, Callable[[Any], Any]]:
     return {key: made[key] or (lambda _, value=value: value) for key, value in usual.items()}
 
 
-def tag(name: str) -> str:
-    """A name of one of several tables or values that a field may have, which locations of errors are free of."""
-    return f"{_TAG}{name}"
-
-
 def named(key: str, names: Iterable[str], instead: str = "") -> Callable[[Any], Any]:
     """What checks that a table says which of several it is; instead: another key by which it may say so."""
     choices = one_of(names := list(names))
@@ -191,7 +183,7 @@ def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: 
     misspelt: set[Location] = set()
     for detail in error.errors():
         inner = detail.get("ctx", {}).get("error")
-        at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and key.startswith(_TAG)))
+        at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and key.startswith(TAG)))
         if isinstance(inner, Faults):
             mistakes += [((*at, *below), message) for below, message in inner.mistakes]
         elif detail["type"] != "default_factory_not_called":  # it depends on a field that is wrong

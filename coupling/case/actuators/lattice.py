@@ -6,19 +6,23 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple
 
-from pydantic import Field, StrictInt
+from pydantic import Field, StrictInt, Tag
 
 from coupling.case.actuators.drive import ActuatorCase, DriveCase, Pushing, limit_faults
 from coupling.case.table import Contradictions, Faults, Table
 from coupling.case.values import (
     DIMENSIONS,
+    LIST,
+    ONE,
+    ONE_OR_LIST,
     Amount,
     Condition,
-    Directed,
+    Expected,
     Formula,
     Length,
+    Listed,
     Point,
-    Quantity,
+    PositiveLength,
     Where,
     length_text,
     quantity_of,
@@ -35,14 +39,21 @@ SAME_PLACE: Final = 1e-9
 MAX_PLACES: Final = 100_000  # actuators
 
 
+_TWO: Final = 'a length such as "150 um", or two, along x and y'
+Pitch = Annotated[
+    Annotated[PositiveLength, Tag(ONE)]
+    | Annotated[tuple[PositiveLength, PositiveLength], Listed(_TWO, 2, 2), Tag(LIST)],
+    ONE_OR_LIST,
+    Expected(_TWO),
+]
+
+
 class _Places(Table):
     rows: StrictInt = Field(ge=1, examples=[3])
     """How many rows there are, along y."""
     columns: StrictInt = Field(ge=1, examples=[3])
     """How many columns there are, along x."""
-    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um", positive=True), "xy")] = Field(
-        examples=["100 um"]
-    )
+    pitch: Pitch = Field(examples=["100 um"])
     """The distance of neighbours, or two: along x and along y; in a hexagonal lattice one."""
     centre: Point = (0.0, 0.0)
     """The lattice's middle."""

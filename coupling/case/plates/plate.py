@@ -18,8 +18,11 @@ from pydantic import (
     field_validator,
 )
 
-from coupling.case.table import Contradictions, Table, tag
+from coupling.case.table import Contradictions, Table
 from coupling.case.values import (
+    LIST,
+    ONE,
+    ONE_OR_LIST,
     Angle,
     Density,
     Expected,
@@ -31,6 +34,7 @@ from coupling.case.values import (
     Pressure,
     Tension,
     quoted,
+    tag,
 )
 
 if TYPE_CHECKING:
@@ -47,14 +51,14 @@ CONSTANTS: Final = ("c11", "c12", "c44")
 
 SupportName = Literal["clamped", "simply-supported", "free"]
 InPlaneName = Literal["immovable", "movable"]
-_ONE, _EACH = tag("one"), tag("each")
-_ONE_OR_EACH: Final = Discriminator(lambda value: _EACH if isinstance(value, dict) else _ONE)
+_EACH: Final = tag("each")
+_ONE_OR_EACH: Final = Discriminator(lambda value: _EACH if isinstance(value, dict) else ONE)
 Supports = Annotated[
-    Annotated[SupportName, Tag(_ONE)] | Annotated[dict[str, SupportName], Tag(_EACH)],
+    Annotated[SupportName, Tag(ONE)] | Annotated[dict[str, SupportName], Tag(_EACH)],
     _ONE_OR_EACH,
 ]
 InPlaneSupports = Annotated[
-    Annotated[InPlaneName, Tag(_ONE)] | Annotated[dict[str, InPlaneName], Tag(_EACH)],
+    Annotated[InPlaneName, Tag(ONE)] | Annotated[dict[str, InPlaneName], Tag(_EACH)],
     _ONE_OR_EACH,
 ]
 
@@ -79,8 +83,8 @@ def _is_ratio(value: object) -> bool:
 
 
 DampingRatios = Annotated[
-    Annotated[StrictFloat, Tag(_ONE)] | Annotated[tuple[tuple[Frequency, StrictFloat], ...], Tag(_EACH)],
-    Discriminator(lambda value: _EACH if isinstance(value, (list, tuple)) else _ONE),
+    Annotated[StrictFloat, Tag(ONE)] | Annotated[tuple[tuple[Frequency, StrictFloat], ...], Tag(LIST)],
+    ONE_OR_LIST,
     WrapValidator(_ratios),
     _RATIOS,
 ]

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 from pydantic import Discriminator, Field, Tag
 
 from coupling.case.actuators import MIN_SPACING, DriveCase
-from coupling.case.table import Contradictions, Mistake, Table, tag
+from coupling.case.table import Contradictions, Mistake, Table
 from coupling.case.values import (
     AXES,
     Columns,
@@ -20,6 +20,7 @@ from coupling.case.values import (
     Quantity,
     first_of,
     read_columns,
+    tag,
     unreadable,
 )
 

@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictInt, StrictStr
 
 from coupling.case.plates.plate import PlateCase
 from coupling.case.plates.platform import PlatformCase
-from coupling.case.table import Contradictions, Table, named, tag
-from coupling.case.values import Angle, FileBeside, Listed, Point, PositiveLength, length_text, quoted
+from coupling.case.table import Contradictions, Table, named
+from coupling.case.values import Angle, FileBeside, Listed, Point, PositiveLength, length_text, quoted, tag
 
 if TYPE_CHECKING:
     from meshes import PlateMesh

@@ -13,9 +13,12 @@ from coupling.case.values.csv_columns import (
 from coupling.case.values.formula import Amount, Condition, Formula, Where, unit_of
 from coupling.case.values.quantities import (
     AXES,
+    LIST,
+    ONE,
+    ONE_OR_LIST,
+    TAG,
     Angle,
     Density,
-    Directed,
     FileBeside,
     Force,
     Foundation,
@@ -46,6 +49,7 @@ from coupling.case.values.quantities import (
     parts_of,
     quantity_of,
     tables_in,
+    tag,
 )
 from coupling.case.values.units import (
     DIMENSIONS,

@@ -16,18 +16,19 @@ from typing import Annotated, Any, Final, Literal, get_args, get_origin
 from pydantic import (
     AfterValidator,
     BaseModel,
+    Discriminator,
     GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
     StrictStr,
+    Tag,
     ValidationInfo,
 )
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.values.units import Quantity, quoted
+from coupling.case.values.units import Expected, Quantity, quoted
 
 AXES: Final = ("x", "y", "z")
-_COUNTS: Final = {2: "two", 3: "three"}
+TAG: Final = "\ue000"  # a character that no key has
 
 
 @dataclass(frozen=True)
@@ -48,33 +49,14 @@ class Listed:
         return core_schema.no_info_before_validator_function(self.validate, handler(source))
 
 
-@dataclass(frozen=True)
-class Directed:
-    """Marks a quantity that is one number, or one along each of some axes."""
+def tag(name: str) -> str:
+    """A name of one of several tables or values that a field may have, which locations of errors are free of."""
+    return f"{TAG}{name}"
 
-    quantity: Quantity
-    axes: str = "xyz"
 
-    @property
-    def expected(self) -> str:
-        """What a value must be, in words: an acceleration such as "9.8 m/s^2", or three, along x, y and z."""
-        along = f"{', '.join(self.axes[:-1])} and {self.axes[-1]}"
-        return f"{self.quantity.expected}, or {_COUNTS[len(self.axes)]}, along {along}"
-
-    def validate(self, value: object, info: ValidationInfo) -> object:
-        """Return the value in SI units; ValueError for what is neither one nor one an axis."""
-        if not isinstance(value, (list, tuple)):
-            return self.quantity.validate(value, info)
-        if len(value) != len(self.axes):
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-        return tuple(self.quantity.validate(part, info) for part in value)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.validate)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        one, count = self.quantity.__get_pydantic_json_schema__(schema, handler), len(self.axes)
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": count, "maxItems": count}]}
+ONE, LIST = tag("one"), tag("list")
+ONE_OR_LIST: Final = Discriminator(lambda value: LIST if isinstance(value, (list, tuple)) else ONE)
+"""Marks a field that has one value or a list of some, by their tags."""
 
 
 def _beside(name: str, info: ValidationInfo) -> str:
@@ -87,7 +69,14 @@ Time = Annotated[float, Quantity("s", "50 ms")]
 Angle = Annotated[float, Quantity("rad", "90 deg")]
 Frequency = Annotated[float, Quantity("Hz", "300 Hz", positive=True)]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
-Gravity = Annotated[float | tuple[float, float, float], Directed(Quantity("m/s^2", "9.80665 m/s^2"))]
+Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
+_THREE: Final = 'an acceleration such as "9.80665 m/s^2", or three, along x, y and z'
+Gravity = Annotated[
+    Annotated[Acceleration, Tag(ONE)]
+    | Annotated[tuple[Acceleration, Acceleration, Acceleration], Listed(_THREE, 3, 3), Tag(LIST)],
+    ONE_OR_LIST,
+    Expected(_THREE),
+]
 Mass = Annotated[float, Quantity("kg", "2e-9 kg", positive=True)]
 Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3", positive=True)]
 Force = Annotated[float, Quantity("N", "2 uN")]
@@ -125,18 +114,12 @@ def marks_of(annotation: Any, lists: bool = True) -> list[Any]:
 
 def quantity_of(annotation: Any, lists: bool = True) -> Quantity | None:
     """What marks a number, or several of one kind, as a quantity; lists: also where it is in a list."""
-    marks = [mark.quantity if isinstance(mark, Directed) else mark for mark in marks_of(annotation, lists)]
-    return next((mark for mark in marks if isinstance(mark, Quantity)), None)
+    return next((mark for mark in marks_of(annotation, lists) if isinstance(mark, Quantity)), None)
 
 
 def kinds_of_items(annotation: Any, count: int) -> list[Any]:
-    """The annotation of each item of a list.
-
-    A mark of the whole list is that of items without their own, as for the accelerations along three axes.
-    """
-    types, mark = get_args(of_kind(annotation, tuple)), quantity_of(annotation, lists=False)
-    if mark:
-        types = tuple(kind if kind is ... else Annotated[kind, mark] for kind in types)
+    """The annotation of each item of a list."""
+    types = get_args(of_kind(annotation, tuple))
     return [types[0]] * count if types[-1] is ... else list(types)
 
 
