@@ -22,7 +22,7 @@ _ALIASES: Final = {
     "t_end": ["duration"], "dt": ["time_step"], "g": ["gravity"], "tol": ["tolerance"],
     "circle": ["disc"], "square": ["rectangle"], "fixed": ["clamped"], "pinned": ["simply-supported"],
 }  # fmt: skip
-"""What the letters and words of textbooks stand for; the first that is known counts."""
+"""What the letters and words of textbooks stand for; the first known one is taken."""
 
 
 def near(word: str, known: Iterable[str]) -> str | None:

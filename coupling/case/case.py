@@ -90,7 +90,7 @@ class Case(CaseTables):
                     if location[0] == "actuators" and len(location) > 1:
                         if (k := int(location[1])) >= alone:
                             must = f"must not vary actuators from {alone} on"
-                            raise ValueError(f"{must}: a change of the lattice makes them")
+                            raise ValueError(f"{must}: the changed lattice makes them anew")
                         if tables["actuators"] is actuators:
                             actuators[k] = put_value(actuators[k], location[2:], value)  # in place: they may be many
                             continue

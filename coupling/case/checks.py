@@ -64,7 +64,7 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
             mistakes += (misplaced := list(_places(tables, plate, mesh, made)))
             mistakes += _theory(plate, tables.run, made, len(tables.actuators))
             if not (may_move or misplaced):
-                mistakes += _held(plate, mesh, made)
+                mistakes += _fixed(plate, mesh, made)
         except Faults as error:
             mistakes += error.mistakes
     if wrong := _too_many(plate, made, tables.run.duration):
@@ -137,7 +137,7 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
             )
             return
         if other >= alone:
-            yield ("actuators", one, "position"), "must differ from that of an actuator of the lattice"
+            yield ("actuators", one, "position"), "must differ from the position of an actuator of the lattice"
         else:
             yield ("actuators", other, "position"), f"must differ from {first}; got the same point"
 
@@ -155,23 +155,23 @@ def _shared(places: Sequence[Place], least: float) -> Iterator[tuple[int, int]]:
             yield one, k
 
 
-def _held(plate: PlateCase, mesh: PlateMesh, made: Sequence[ActuatorCase]) -> Iterator[Mistake]:
+def _fixed(plate: PlateCase, mesh: PlateMesh, made: Sequence[ActuatorCase]) -> Iterator[Mistake]:
     """Yield that nothing keeps the plate from moving as a whole, w = a + b x + c y."""
     supports = plate.supports_of(list(mesh.boundaries))
     if plate.foundation > 0 or "clamped" in supports.values():
         return
-    held = [one.position for one in made if one.force is None]
+    fixed = [one.position for one in made if one.force is None]
     rims = [mesh.boundaries[name].ravel() for name, support in supports.items() if support == "simply-supported"]
-    if not mesh.spans([*held, *(place for rim in rims for place in mesh.points[rim].tolist())]):
+    if not mesh.spans([*fixed, *(place for rim in rims for place in mesh.points[rim].tolist())]):
         needed = "fix a boundary, or use three actuators with strokes that are not in line"
         yield ("plate", "supports"), f"must not leave the plate free to move as a whole: {needed}"
-    if plate.theory == "von-karman" and not rims and len(held) == 3 == len(made):
+    if plate.theory == "von-karman" and not rims and len(fixed) == 3 == len(made):
         same = "which tilt it without bending it; both theories are the same there"
         yield ("plate", "theory"), f'must be "linear" on a free plate with three actuators, {same}'
 
 
 def _theory(plate: PlateCase, run: RunCase, made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
-    """Yield what a plate does not go with; alone: how many actuators are not of the lattice."""
+    """Yield what cannot be combined with a plate; alone: how many actuators are not of the lattice."""
     stretches, count = plate.theory == "von-karman", len(made)
     if stretches:
         if run.scheme == "paper":
@@ -205,7 +205,7 @@ def _theory(plate: PlateCase, run: RunCase, made: Sequence[ActuatorCase], alone:
 
 
 def common_period(one: float | None, other: float) -> float:
-    """The shortest whole multiple of both periods [s], to rounding; inf: there is none of up to MAX_PERIODS of each."""
+    """The shortest common multiple of two periods [s], to rounding; inf where it has more than MAX_PERIODS of one."""
     if one is None:
         return other
     ratio = Fraction(one / other).limit_denominator(MAX_PERIODS)
@@ -221,7 +221,7 @@ def _location(k: int, alone: int, key: str) -> Location:
 
 
 def _periodic(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
-    """Yield the first drive with which those before it have no common period."""
+    """Yield the first drive that has no common period with those before it."""
     period: float | None = None
     for k, one in enumerate(made):
         if one.frequency is None or one.stroke == 0 or one.force == 0:
@@ -236,7 +236,7 @@ def _periodic(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
 
 
 def _endless(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
-    """Yield the drives that end, or grow, and so have no steady state; of a lattice its first."""
+    """Yield the drives that end or grow, and so have no steady state; of a lattice only the first."""
     why = f"with {STEADY} in [run], which takes a drive without end"
     for k, one in enumerate(made[: alone + 1]):
         if one.cycle == "up":

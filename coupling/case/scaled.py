@@ -93,7 +93,7 @@ def friction_scales(friction: FrictionCase) -> dict[str, float] | None:
 
 
 def more_plastic(friction: FrictionCase) -> tuple[float, ...]:
-    """Plasticity indices above that of Kogut and Etsion's law, which hold less and adhere alike; else none."""
+    """Larger plasticity indices of Kogut and Etsion's law: less friction, the same adhesion; () for other laws."""
     if not isinstance(friction, KogutEtsionCase):
         return ()
     return tuple(index for index in INDICES if index > friction.plasticity_index)

@@ -104,7 +104,7 @@ class Table(BaseModel, metaclass=_Refusing):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
 
     whole_file: ClassVar[bool] = False
-    """Whether it is all that a file holds."""
+    """Whether its fields are the tables of a file."""
     in_template: ClassVar[tuple[str, ...]] = ()
     """Keys that a template states although a table may do without them, as the first of several choices."""
 

@@ -1,4 +1,4 @@
-"""The tables of a case file: all that it may hold, and [part] and [run]."""
+"""The tables of a case file: all that it may have, and [part] and [run]."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RunCase(Table):
     scheme: Literal["events", "fixed", "paper"] = "events"
     """How the path is found: by located events, or for comparison by fixed steps."""
     time_step: PositiveTime | None = Field(default=None, examples=["0.1 us"])
-    """That of fixed steps; without it 1e-4 of the shortest stroke."""
+    """The step of the schemes with fixed steps; without it 1e-4 of the shortest stroke."""
     after_detachment: Literal["stop", "fly"] = "stop"
     """Whether the run ends where the part comes off, or follows its flight."""
 
@@ -80,7 +80,7 @@ def _actuators_or(schema: dict[str, Any]) -> None:
 
 
 class CaseTables(Table):
-    """All that a case file holds; a platform has no actuators."""
+    """All tables of a case file; a platform has no actuators."""
 
     model_config = ConfigDict(json_schema_extra=_actuators_or)
 

@@ -32,7 +32,7 @@ class Problem:
 
 
 class CaseError(ValueError):
-    """A case file that cannot be used; `problems` holds every mistake in it, in the order of their lines."""
+    """A case file that cannot be used; `problems` has every mistake in it, in the order of their lines."""
 
     def __init__(self, file: str, problems: Iterable[Problem]) -> None:
         self.file = file

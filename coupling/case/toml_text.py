@@ -15,7 +15,7 @@ _KEY: Final = re.compile(rf"{_NAME}(?:[ \t]*\.[ \t]*{_NAME})*", re.DOTALL)
 _HEADER: Final = re.compile(rf"\[\[?[ \t]*{_KEY.pattern}[ \t]*\]\]?", re.DOTALL)
 _VALUE: Final = re.compile(
     rf"{_TEXT}|\d{{4}}-\d\d-\d\d \d\d:[^\s,\]}}#]+|[^\s,\]}}#]+", re.DOTALL
-)  # but for lists and tables
+)  # lists and tables are taken apart
 _SPACE: Final = re.compile(r"(?:\s|#[^\n]*)*")
 _LINE: Final = re.compile(r"[^\n]*\n?")
 
@@ -85,7 +85,7 @@ class TomlText:
         self._edits.append((place, place, begin + lines.replace("\n", ends) + ends))
 
     def replace(self, start: int, end: int, lines: str) -> None:
-        """Have lines in place of others."""
+        """Replace lines by others."""
         self._edits.append((start, end, ""))
         self.insert(start, lines)
 

@@ -24,11 +24,13 @@ PLAIN = {
     "Count": "int",
     "Repeats": "int | str",
     "PointsOrFile": "int | str",
+    "Where": "Condition",
 }
 SHAPES = {
     "Point": ("tuple[float, float]", "m"),
     "Place": ("tuple[float, float]", "m"),
     "Velocity": ("tuple[float, float]", "m/s"),
+    "Pitch": ("float | tuple[float, float]", "m"),
     "Gravity": ("float | tuple[float, float, float]", "m/s^2"),
     "Forces": ("tuple[float, ...]", "N"),
     "Points": ("tuple[tuple[float, float], ...]", "s and m"),
@@ -147,9 +149,8 @@ def _kind(annotation: ast.expr) -> str:
 
 
 def _default(value: ast.expr | None, kind: type, name: str) -> str:
-    if not isinstance(value, ast.Call):
-        return ast.unparse(value) if value is not None else ""
-    given = {word.arg: word.value for word in value.keywords}
-    if isinstance(given.get("default"), ast.Attribute):  # of the law that has the number
+    given = {word.arg: word.value for word in value.keywords} if isinstance(value, ast.Call) else {"default": value}
+    default = given.get("default")
+    if isinstance(default, ast.Attribute) and issubclass(kind, BaseModel):  # of the law that has the number
         return repr(kind.model_fields[name].default)
-    return ast.unparse(given["default"]) if "default" in given else "computed" if "default_factory" in given else ""
+    return ast.unparse(default) if default is not None else "computed" if "default_factory" in given else ""

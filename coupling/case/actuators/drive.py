@@ -115,7 +115,7 @@ class DriveCase(Table):
     frequency: Frequency | None = None
     """One cycle takes one over this, and the dwells."""
     cycle: Cycle = "up-down"
-    """Up in the first half and down in the second; up once and held; or sines."""
+    """Up in the first half and down in the second; up once, to stay; or sines."""
     cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
     """How many cycles there are, after which it rests where it began; without it they do not end."""
     dwell: Time = Field(default=0.0, ge=0)
@@ -159,11 +159,11 @@ class DriveCase(Table):
             yield "frequency", 'is missing; it must be a frequency such as "300 Hz"'
         cycle = given.get("cycle", "up-down")
         if "cycles" in given and cycle == "up":
-            yield "cycles", 'must not be given with cycle = "up"; it counts cycles that go on'
+            yield "cycles", 'must not be given with cycle = "up"; it counts periodic cycles'
         if "dwell" in given and cycle in ("up", "sine", "cosine"):
             yield "dwell", f'must not be given with cycle = "{cycle}"; it is the rest after each stroke of "up-down"'
         if "phase" in given and cycle == "up":
-            yield "phase", 'must not be given with cycle = "up"; it is where in a cycle that goes on the drive begins'
+            yield "phase", 'must not be given with cycle = "up"; it is where in a periodic cycle the drive begins'
         yield from cls._of_ramp(given, cycle)
         if "repeats" in given:
             yield "repeats", "must not be given without a table or segments; cycles counts those of a stroke"

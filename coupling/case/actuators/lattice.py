@@ -91,8 +91,8 @@ class LatticeCase(DriveCase, Pushing, _Places):
     In a hexagonal lattice rows are sqrt(3)/2 pitches apart, and every second one, counted from the middle one (of an
     even number the lower of the two), is half a pitch further to the right.
 
-    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
-    `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
+    Those nearer than `margin` in m to the rim, or beyond it, are left out, unless it is None, and so are those for which
+    the `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
     """
 
     force: Annotated[float | Formula, Amount("N", "2 uN")] | None = Field(default=None, examples=["1 mN"])  # type: ignore[assignment]

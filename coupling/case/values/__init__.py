@@ -1,4 +1,4 @@
-"""What a field of a file may hold: quantities with units, formulas, and columns of numbers in CSV files."""
+"""What a field of a file may have: quantities with units, formulas, and columns of numbers in CSV files."""
 
 from coupling.case.values.csv_columns import (
     Columns,

@@ -1,7 +1,7 @@
 """Measured numbers in a CSV file, whose header gives each column its name and unit: time [ms], x [um].
 
-Instruments and trackers write it in their own ways. What is unambiguous is read: semicolons and tabs in place of
-commas, decimal commas between these, UTF-16 and Windows-1252, units in parentheses or in rows below the header.
+Instruments and trackers write it in their own ways. What is unambiguous is read: semicolons and tabs instead
+of commas, decimal commas between these, UTF-16 and Windows-1252, units in parentheses or in rows below the header.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class MeasuredColumns(NamedTuple):
     lines: tuple[int, ...]  # of its rows, from 1
     mistakes: list[str]
     ignored: tuple[str, ...] = ()  # the cells of the header whose columns have another name than those known
-    lost: int = 0  # rows without numbers but for the time, as those of frames in which a tracker found nothing
+    lost: int = 0  # rows with a time and no other number, as of frames in which a tracker found nothing
 
 
 def read_rows(path: Path, example: str) -> Rows | str:

@@ -73,7 +73,7 @@ class Expression:
         except (RecursionError, MemoryError):
             raise ValueError("it is nested too deeply") from None
         except SyntaxError:
-            raise ValueError("the expression is not complete, or has a sign that means nothing") from None
+            raise ValueError("the expression is incomplete, or has an unknown sign") from None
 
     def evaluate(self, names: Mapping[str, float]) -> float | bool:
         """The value where the NAMES have these values; ValueError, saying why, when there is none."""
@@ -88,7 +88,9 @@ class Expression:
         except RecursionError:
             raise ValueError("is nested too deeply") from None
         except (InvalidExpression, TypeError):
-            raise ValueError("has a function with the wrong number of arguments, or what is no number") from None
+            raise ValueError(
+                "has a function with the wrong number of arguments, or something that is not a number"
+            ) from None
         except ValueError:  # What `math` says differs between versions of Python.
             raise ValueError("has no real value") from None
 
@@ -188,7 +190,7 @@ class Amount(Quantity):
             return Formula(text, Expression(source), unit, self.value_of(text, "1", unit))
         except ValueError as error:
             reason = str(error).partition(f"got {quoted(text)}")[2] or f": {error}"
-            rule = "an expression and, once at its end, a unit"
+            rule = "an expression with one unit, at its end"
             raise ValueError(f"must be {rule}; got {quoted(text)}{reason}") from None
 
     def in_range(self, text: object, value: float) -> float:
@@ -216,7 +218,7 @@ def condition(value: object) -> Condition:
     try:
         source, rest = split(value) if isinstance(value, str) else ("", "")
         if rest:
-            raise ValueError(f'"{rest}" is too much; it has no unit, x and y are in metres')
+            raise ValueError(f'"{rest}" is too much: a condition has no unit, and x and y are in metres')
         return Condition(str(value), Expression(source))
     except ValueError as error:
         raise ValueError(f"must be {_CHOICE}; got {quoted(value)}: {error}") from None

@@ -16,7 +16,7 @@ from coupling.case.values import marks_of, parts_of, quantity_of
 from coupling.case.writing.text import written
 
 HEAD: Final = """\
-# A template: every field there is. `active-surface check FILE` tells whether a file is right, and every mistake if not.
+# A template: every field there is. `active-surface check FILE` says whether a file is right, or lists its mistakes.
 # Lines such as #name = "value" are fields that may be left out: take the # away to give one.
 """
 WIDTH: Final = 110

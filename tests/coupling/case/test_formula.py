@@ -47,7 +47,7 @@ def test_a_number_and_a_unit_stay_a_number(text, value):
 REFUSED = [
     ("row^2 ms", "there is no unit"),
     ("(" * 300 + "row" + ")" * 300 + " ms", ": it is longer than 500 characters"),
-    ("(row ms", ": the expression is not complete, or has a sign that means nothing"),
+    ("(row ms", ": the expression is incomplete, or has an unknown sign"),
     ("sine(row) ms", ": there is no sine; did you mean sin?"),
     ("arctan2(y, x) ms", ": there is no arctan2; did you mean atan2?"),
     ("round(row) ms", ": there is no round; there are row, column, rows, columns, x, y, pi, sqrt, sin, cos, tan,"),
@@ -62,7 +62,7 @@ REFUSED = [
     ("row " + "+ row " * 500 + "ms", ": it is longer than 500 characters"),
 ]
 NO_VALUE = [
-    ("sqrt(row, 2) ms", "has a function with the wrong number of arguments, or what is no number"),
+    ("sqrt(row, 2) ms", "has a function with the wrong number of arguments, or something that is not a number"),
     ("min(row) ms", "has a function"),
     ("sqrt + 1 ms", "has a function"),
     ("pi(2) ms", "has a function"),
@@ -101,10 +101,10 @@ def test_conditions_hold_or_do_not(text, truth):
 @pytest.mark.parametrize(
     ("text", "cause"),
     [
-        ("hypot(x, y) > 100 um", '"um" is too much; it has no unit, x and y are in metres'),
+        ("hypot(x, y) > 100 um", '"um" is too much: a condition has no unit, and x and y are in metres'),
         ("rwo > 2", "there is no rwo; did you mean row?"),
         ("row = 2", '"= 2" is too much'),
-        ("row >", "not complete"),
+        ("row >", "incomplete"),
         ("row > 2 and open('x')", "is too much"),
         ("row " + "+ row " * 500, "longer than 500 characters"),
         ("", "must be an expression that is true or false"),
