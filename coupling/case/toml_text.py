@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections import Counter
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from coupling.case.table import Location, value_at
 
@@ -20,23 +20,15 @@ _SPACE: Final = re.compile(r"(?:\s|#[^\n]*)*")
 _LINE: Final = re.compile(r"[^\n]*\n?")
 
 
-class Statement(NamedTuple):
-    """The lines of a header, or of a key and its value."""
-
-    location: Location
-    start: int
-    end: int
-
-
 class TomlText:
     """Edits of a text that is valid TOML; those of places that it does not have raise LookupError."""
 
     def __init__(self, text: str) -> None:
         self.tables = tomllib.loads(text)
-        self.statements: list[Statement] = []
+        self.statements: dict[Location, tuple[int, int]] = {}  # lines of a header, or of a key and its value
         self._text, self._edits = text, list[tuple[int, int, str]]()
         self._values: dict[Location, tuple[int, int]] = {}
-        self._removable: dict[Location, tuple[int, int]] = {}
+        self._inline: dict[Location, tuple[int, int]] = {}  # keys between braces, with the comma before them
         self._ends: dict[Location, tuple[int, str]] = {}  # where a table takes a key, and how that begins
         self._read()
 
@@ -55,7 +47,7 @@ class TomlText:
         """The line of each header, and of each key with all of its value."""
         lines: dict[Location, int] = {}
         number, last = 1, 0
-        for location, start, _ in self.statements:
+        for location, (start, _) in self.statements.items():
             number, last = number + self._text.count("\n", last, start), start
             for depth in range(1, len(location) + 1):
                 lines.setdefault(location[:depth], number)
@@ -76,7 +68,7 @@ class TomlText:
 
     def remove(self, location: Location) -> None:
         """Take a key away, with its line where that is its own."""
-        self._edits.append((*self._removable[location], ""))
+        self._edits.append((*(self.statements.get(location) or self._inline[location]), ""))
 
     def insert(self, place: int, lines: str) -> None:
         """Have lines at the beginning of a line, or at the end of the text."""
@@ -103,8 +95,7 @@ class TomlText:
             else:
                 names, at = self._pair(table, at)
             at = _found(_LINE, text, at).end()
-            self.statements.append(Statement((*table, *names), start, at))
-            self._removable[(*table, *names)] = start, at
+            self.statements[(*table, *names)] = start, at
             for depth in range(max(len(names), 1)):
                 self._ends[(*table, *names[:depth])] = at, head + "".join(f"{name}." for name in names[:depth])
             at = self._past_space(at)
@@ -135,7 +126,7 @@ class TomlText:
                 else:
                     names, at = self._pair(location, at)
                     if last > start + 1:  # a comma stands before it
-                        self._removable[(*location, *names)] = last, at
+                        self._inline[(*location, *names)] = last, at
                     last = at
             end = at + 1
             if opens == "{":

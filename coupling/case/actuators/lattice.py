@@ -6,26 +6,22 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple
 
-from pydantic import Field, StrictInt, Tag
+from pydantic import Field, StrictInt
 
 from coupling.case.actuators.drive import ActuatorCase, DriveCase, Pushing, limit_faults
 from coupling.case.table import Contradictions, Faults, Table
 from coupling.case.values import (
-    DIMENSIONS,
-    LIST,
-    ONE,
-    ONE_OR_LIST,
     Amount,
     Condition,
     Expected,
     Formula,
     Length,
     Listed,
+    OneOrList,
     Point,
     PositiveLength,
     Where,
     length_text,
-    quantity_of,
     quoted,
 )
 
@@ -41,10 +37,7 @@ MAX_PLACES: Final = 100_000  # actuators
 
 _TWO: Final = 'a length such as "150 um", or two, along x and y'
 Pitch = Annotated[
-    Annotated[PositiveLength, Tag(ONE)]
-    | Annotated[tuple[PositiveLength, PositiveLength], Listed(_TWO, 2, 2), Tag(LIST)],
-    ONE_OR_LIST,
-    Expected(_TWO),
+    OneOrList[PositiveLength, Annotated[tuple[PositiveLength, PositiveLength], Listed(_TWO, 2, 2)]], Expected(_TWO)
 ]
 
 
@@ -91,8 +84,8 @@ class LatticeCase(DriveCase, Pushing, _Places):
     In a hexagonal lattice rows are sqrt(3)/2 pitches apart, and every second one, counted from the middle one (of an
     even number the lower of the two), is half a pitch further to the right.
 
-    Those nearer than `margin` in m to the rim, or beyond it, are left out, unless it is None, and so are those for which
-    the `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
+    Those nearer than `margin` in m to the rim, or beyond it, are left out, unless it is None, and those for which the
+    `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
     """
 
     force: Annotated[float | Formula, Amount("N", "2 uN")] | None = Field(default=None, examples=["1 mN"])  # type: ignore[assignment]
@@ -123,11 +116,7 @@ class LatticeCase(DriveCase, Pushing, _Places):
             yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
 
 
-AMOUNTS: Final = {
-    key: mark
-    for key, field in LatticeCase.model_fields.items()
-    if isinstance(mark := quantity_of(field.rebuild_annotation()), Amount)
-}
+FORMULAS: Final = ("stroke", "force", "stiffness", "frequency", "dwell", "delay", "phase")
 """The keys of an actuator that may be formulas."""
 
 
@@ -148,14 +137,14 @@ def actuators_of(lattice: LatticeCase, mesh: PlateMesh) -> tuple[ActuatorCase, .
     spots = _standing(lattice, mesh)
     columns: dict[str, list[Any]] = {}
     wrong = []
-    for key in AMOUNTS:
+    for key in FORMULAS:
         try:
             columns[key] = _values(key, lattice, spots)
-        except ValueError as error:
-            wrong.append((("lattice", key), str(error)))
+        except Faults as faults:
+            wrong += faults.mistakes
     if wrong:
         raise Faults(wrong)
-    same = {key: getattr(lattice, key) for key in ActuatorCase.model_fields if key not in ("position", *AMOUNTS)}
+    same = {key: getattr(lattice, key) for key in ActuatorCase.model_fields if key not in ("position", *FORMULAS)}
     if same["max_stroke"] is not None or same["max_force"] is not None:
         for k, spot in enumerate(spots):
             for at, message in limit_faults({**same, "stroke": columns["stroke"][k], "force": columns["force"][k]}):
@@ -177,7 +166,8 @@ def _standing(lattice: LatticeCase, mesh: PlateMesh) -> Sequence[Spot]:
         if not standing:
             raise Faults([(("lattice", "margin"), "leaves no actuator on the plate")])
     if lattice.where is not None:
-        standing = [(spot, gap) for spot, gap in standing if _is_true(lattice.where, lattice, spot)]
+        there = _values("where", lattice, [spot for spot, _ in standing])
+        standing = [one for one, is_there in zip(standing, there, strict=True) if is_there]
         if not standing:
             must = f"must be true for one actuator or more; {quoted(lattice.where.text)} is true for none"
             raise Faults([(("lattice", "where"), must)])
@@ -190,30 +180,17 @@ def _standing(lattice: LatticeCase, mesh: PlateMesh) -> Sequence[Spot]:
     return [spot for spot, _ in standing]
 
 
-def _is_true(where: Condition, lattice: LatticeCase, spot: Spot) -> bool:
-    try:
-        return where.holds(lattice.names_at(spot))
-    except ValueError as error:
-        message = f"must be true or false for each actuator; {quoted(where.text)} {error} at {spot}"
-        raise Faults([(("lattice", "where"), message)]) from None
-
-
-def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[float | None]:
-    """The values of a key at places; ValueError, which names the first place where there is none."""
-    amount = getattr(lattice, key)
-    if not isinstance(amount, Formula):
-        return [amount] * len(spots)
-    found: list[float | None] = []
+def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[Any]:
+    """The values of a key at places; raises Faults, which name the first place where there is none."""
+    formula = getattr(lattice, key)
+    if not isinstance(formula, Formula | Condition):
+        return [formula] * len(spots)
+    found: list[Any] = []
     for spot in spots:
         try:
-            value = amount.value(lattice.names_at(spot))
+            found.append(formula.value(lattice.names_at(spot)))
         except ValueError as error:
-            rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
-            raise ValueError(f"{rule}; {quoted(amount.text)} {error} at {spot}") from None
-        try:
-            found.append(AMOUNTS[key].in_range(f"{value / amount.scale:g} {amount.unit}", value))
-        except ValueError as error:
-            raise ValueError(f"{error} at {spot}") from None
+            raise Faults([(("lattice", key), f"{error} at {spot}")]) from None
     return found
 
 

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from pydantic import (
     Discriminator,
@@ -20,15 +20,14 @@ from pydantic import (
 
 from coupling.case.table import Contradictions, Table
 from coupling.case.values import (
-    LIST,
     ONE,
-    ONE_OR_LIST,
     Angle,
     Density,
     Expected,
     Foundation,
     Frequency,
     LoadPressure,
+    OneOrList,
     PositiveLength,
     PositivePressure,
     Pressure,
@@ -49,18 +48,14 @@ SILICON: Final = (165.7e9, 63.9e9, 79.6e9)
 """c11, c12 and c44 [Pa] (Hopcroft, Nix and Kenny, 2010)."""
 CONSTANTS: Final = ("c11", "c12", "c44")
 
-SupportName = Literal["clamped", "simply-supported", "free"]
-InPlaneName = Literal["immovable", "movable"]
 _EACH: Final = tag("each")
-_ONE_OR_EACH: Final = Discriminator(lambda value: _EACH if isinstance(value, dict) else ONE)
-Supports = Annotated[
-    Annotated[SupportName, Tag(ONE)] | Annotated[dict[str, SupportName], Tag(_EACH)],
-    _ONE_OR_EACH,
+Name = TypeVar("Name", bound=str)
+OneOrEach = Annotated[
+    Annotated[Name, Tag(ONE)] | Annotated[dict[str, Name], Tag(_EACH)],
+    Discriminator(lambda value: _EACH if isinstance(value, dict) else ONE),
 ]
-InPlaneSupports = Annotated[
-    Annotated[InPlaneName, Tag(ONE)] | Annotated[dict[str, InPlaneName], Tag(_EACH)],
-    _ONE_OR_EACH,
-]
+Supports = OneOrEach[Literal["clamped", "simply-supported", "free"]]
+InPlaneSupports = OneOrEach[Literal["immovable", "movable"]]
 
 _RATIOS: Final = Expected(
     'a ratio from 0 to below 1, or pairs of a frequency and a ratio, such as [["20 kHz", 0.02], ["80 kHz", 0.01]]'
@@ -83,10 +78,7 @@ def _is_ratio(value: object) -> bool:
 
 
 DampingRatios = Annotated[
-    Annotated[StrictFloat, Tag(ONE)] | Annotated[tuple[tuple[Frequency, StrictFloat], ...], Tag(LIST)],
-    ONE_OR_LIST,
-    WrapValidator(_ratios),
-    _RATIOS,
+    OneOrList[StrictFloat, tuple[tuple[Frequency, StrictFloat], ...]], WrapValidator(_ratios), _RATIOS
 ]
 
 

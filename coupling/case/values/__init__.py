@@ -13,9 +13,7 @@ from coupling.case.values.csv_columns import (
 from coupling.case.values.formula import Amount, Condition, Formula, Where, unit_of
 from coupling.case.values.quantities import (
     AXES,
-    LIST,
     ONE,
-    ONE_OR_LIST,
     TAG,
     Angle,
     Density,
@@ -28,6 +26,7 @@ from coupling.case.values.quantities import (
     Listed,
     LoadPressure,
     Mass,
+    OneOrList,
     Point,
     PositiveArea,
     PositiveForce,

@@ -18,7 +18,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainValidator,
 from pydantic_core import CoreSchema, core_schema
 from simpleeval import InvalidExpression, SimpleEval
 
-from coupling.case.values.units import Expected, Quantity, quoted
+from coupling.case.values.units import DIMENSIONS, Expected, Quantity, quoted
 from coupling.suggestion import near
 
 NAMES: Final = ("row", "column", "rows", "columns", "x", "y", "pi")
@@ -135,21 +135,26 @@ def unit_of(text: str) -> str:
 
 @dataclass(frozen=True)
 class Formula:
-    """An expression, its unit, and how much in SI units one of that is; `text` is both as written."""
+    """An expression and its unit, for a quantity; `text` is both as written."""
 
     text: str
     expression: Expression
     unit: str
-    scale: float
+    scale: float  # of the unit in SI
+    amount: Amount
 
     def value(self, names: Mapping[str, float]) -> float:
         """The value in SI units where the names have these values; ValueError, saying why, when there is none."""
-        value = self.expression.evaluate(names)
-        if isinstance(value, bool):
-            raise ValueError("is a comparison and not a number")
-        if not math.isfinite(value * self.scale):
-            raise ValueError("is not finite")
-        return value * self.scale
+        try:
+            value = self.expression.evaluate(names)
+            if isinstance(value, bool):
+                raise ValueError("is a comparison and not a number")
+            if not math.isfinite(si := value * self.scale):
+                raise ValueError("is not finite")
+        except ValueError as error:
+            rule = f"must be {DIMENSIONS[self.amount.unit]} for each actuator"
+            raise ValueError(f"{rule}; {quoted(self.text)} {error}") from None
+        return self.amount.in_range(f"{value:g} {self.unit}", si)
 
 
 @dataclass(frozen=True)
@@ -159,11 +164,14 @@ class Condition:
     text: str
     expression: Expression
 
-    def holds(self, names: Mapping[str, float]) -> bool:
+    def value(self, names: Mapping[str, float]) -> bool:
         """Whether it is true where the names have these values; ValueError, saying why, when it is neither."""
-        value = self.expression.evaluate(names)
-        if not isinstance(value, bool):
-            raise ValueError("is a number and not a comparison")
+        try:
+            value = self.expression.evaluate(names)
+            if not isinstance(value, bool):
+                raise ValueError("is a number and not a comparison")
+        except ValueError as error:
+            raise ValueError(f"must be true or false for each actuator; {quoted(self.text)} {error}") from None
         return value
 
 
@@ -187,7 +195,7 @@ class Amount(Quantity):
         if re.fullmatch(r"[+-]?\s*[\d._eE+-]*", source):
             return super().parse(text)
         try:
-            return Formula(text, Expression(source), unit, self.value_of(text, "1", unit))
+            return Formula(text, Expression(source), unit, self.value_of(text, "1", unit), self)
         except ValueError as error:
             reason = str(error).partition(f"got {quoted(text)}")[2] or f": {error}"
             rule = "an expression with one unit, at its end"

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, get_args, get_origin
+from typing import Annotated, Any, Final, Literal, TypeVar, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -55,8 +55,13 @@ def tag(name: str) -> str:
 
 
 ONE, LIST = tag("one"), tag("list")
-ONE_OR_LIST: Final = Discriminator(lambda value: LIST if isinstance(value, (list, tuple)) else ONE)
-"""Marks a field that has one value or a list of some, by their tags."""
+One = TypeVar("One")
+Several = TypeVar("Several")
+OneOrList = Annotated[
+    Annotated[One, Tag(ONE)] | Annotated[Several, Tag(LIST)],
+    Discriminator(lambda value: LIST if isinstance(value, (list, tuple)) else ONE),
+]
+"""One value, or a list of several."""
 
 
 def _beside(name: str, info: ValidationInfo) -> str:
@@ -71,12 +76,8 @@ Frequency = Annotated[float, Quantity("Hz", "300 Hz", positive=True)]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
 _THREE: Final = 'an acceleration such as "9.80665 m/s^2", or three, along x, y and z'
-Gravity = Annotated[
-    Annotated[Acceleration, Tag(ONE)]
-    | Annotated[tuple[Acceleration, Acceleration, Acceleration], Listed(_THREE, 3, 3), Tag(LIST)],
-    ONE_OR_LIST,
-    Expected(_THREE),
-]
+Three = Annotated[tuple[Acceleration, Acceleration, Acceleration], Listed(_THREE, 3, 3)]
+Gravity = Annotated[OneOrList[Acceleration, Three], Expected(_THREE)]
 Mass = Annotated[float, Quantity("kg", "2e-9 kg", positive=True)]
 Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3", positive=True)]
 Force = Annotated[float, Quantity("N", "2 uN")]

@@ -117,7 +117,7 @@ def _put_lattice(file: TomlText, before: Case, after: Case, folder: Path) -> int
                 _put(file, ("lattice", key), ActuatorCase.model_fields[key].rebuild_annotation(), None, value)
     else:
         units = {**lattice, "position": lattice["pitch"]}
-        lines = [one for one in file.statements if one.location[0] == "lattice"]
+        lines = [span for location, span in file.statements.items() if location[0] == "lattice"]
         tables = "\n\n".join(block("actuators", one, folder, units, brackets=2) for one in new)
-        file.replace(lines[0].start, lines[-1].end, tables)
+        file.replace(lines[0][0], lines[-1][1], tables)
     return alone
