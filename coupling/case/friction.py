@@ -132,7 +132,7 @@ class TableCase(Table):
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         if "file" in given:
-            for name in {"loads", "limits"} & given.keys():
+            for name in (name for name in ("loads", "limits") if name in given):
                 yield name, "must not be given with a file, which has the points"
         elif "loads" not in given:
             yield "loads", f'is missing; it must be {_SEVERAL.expected}, or use file = "friction.csv" instead'

@@ -21,6 +21,7 @@ from coupling.case.values import (
     PositiveLength,
     Stiffness,
     Time,
+    expected_of,
     length_text,
     quoted,
 )
@@ -90,10 +91,8 @@ class SegmentCase(Table):
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         if given.get("cycle") != "hold":
-            if "stroke" not in given:
-                yield "stroke", 'is missing; it must be a length such as "150 um"'
-            if "frequency" not in given:
-                yield "frequency", 'is missing; it must be a frequency such as "300 Hz"'
+            for key in (key for key in ("stroke", "frequency") if key not in given):
+                yield key, f"is missing; it must be {expected_of(cls.model_fields[key])}"
             return
         for key in ("stroke", "frequency", "cycles"):
             if key in given:
@@ -157,26 +156,15 @@ class DriveCase(Table):
         """What does not go with a stroke or force that comes again and again."""
         if "frequency" not in given:
             yield "frequency", 'is missing; it must be a frequency such as "300 Hz"'
-        cycle = given.get("cycle", "up-down")
-        if "cycles" in given and cycle == "up":
-            yield "cycles", 'must not be given with cycle = "up"; it counts periodic cycles'
-        if "dwell" in given and cycle in ("up", "sine", "cosine"):
-            yield "dwell", f'must not be given with cycle = "{cycle}"; it is the rest after each stroke of "up-down"'
-        if "phase" in given and cycle == "up":
-            yield "phase", 'must not be given with cycle = "up"; it is where in a periodic cycle the drive begins'
-        yield from cls._of_ramp(given, cycle)
-        if "repeats" in given:
-            yield "repeats", "must not be given without a table or segments; cycles counts those of a stroke"
-
-    @classmethod
-    def _of_ramp(cls, given: Mapping[str, Any], cycle: object) -> Contradictions:
-        """What does not go with a ramp."""
-        ramp, cycles = given.get("ramp", 0.0), given.get("cycles")
-        if "ramp" in given and cycle in ("up-down", "up"):
-            yield "ramp", f'must not be given with cycle = "{cycle}"; only a "sine" and a "cosine" grow'
-        elif cycles is not None and 2 * ramp > cycles:
+        cycle, cycles, ramp = given.get("cycle", "up-down"), given.get("cycles"), given.get("ramp", 0.0)
+        for key, (others, why) in _OF_OTHER_CYCLES.items():
+            if key in given and cycle in others:
+                yield key, f'must not be given with cycle = "{cycle}"; {why}'
+        if cycle in ("sine", "cosine") and cycles is not None and 2 * ramp > cycles:
             why = f"half of cycles, {cycles / 2:g}: the wave grows over the first cycles and decays over the last"
             yield "ramp", f"must be at most {why}; got {ramp:g}"
+        if "repeats" in given:
+            yield "repeats", "must not be given without a table or segments; cycles counts those of a stroke"
 
     @classmethod
     def _beside_times(cls, driver: str, given: Mapping[str, Any]) -> Contradictions:
@@ -185,12 +173,10 @@ class DriveCase(Table):
         for key in ("frequency", "cycle", "cycles", "dwell", "phase", "ramp"):
             if key in given:
                 yield key, f"must not be given with {_NAMED[driver]}, {why}"
-        if driver == "segments" and given["segments"] == ():
+        if given.get("segments") == ():
             yield "segments", "must be at least one table; got none"
-        if driver == "segments":
-            count = sum(one.cycles for one in given["segments"])
-            if count > MAX_CYCLES:
-                yield "segments", f"must have at most {MAX_CYCLES} cycles together; got {count}"
+        if (count := sum(one.cycles for one in given.get("segments", ()))) > MAX_CYCLES:
+            yield "segments", f"must have at most {MAX_CYCLES} cycles together; got {count}"
         heights = _heights(given[driver])
         if given.get("repeats", 1) != 1 and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
             ends = "whose last height is not its first" if driver == "table" else "which do not end at height 0"
@@ -224,6 +210,13 @@ class ActuatorCase(DriveCase, Pushing, _Place):
         yield from limit_faults(given)
 
 
+_OF_OTHER_CYCLES: Final = {
+    "cycles": (("up",), "it counts periodic cycles"),
+    "dwell": (("up", "sine", "cosine"), 'it is the rest after each stroke of "up-down"'),
+    "phase": (("up",), "it is where in a periodic cycle the drive begins"),
+    "ramp": (("up-down", "up"), 'only a "sine" and a "cosine" grow'),
+}
+"""The cycles that keys do not go with, and why."""
 _NAMED: Final = {"stroke": "a stroke", "force": "a force", "table": "a table", "segments": "segments"}
 
 
