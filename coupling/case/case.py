@@ -69,8 +69,8 @@ class Case(CaseTables):
         Raises
         ------
         InputError
-            Names every place that is no field and every wrong value. After `lattice` is varied once its actuators are
-            those of the case, and there is no `lattice` any more.
+            Names every place that is no field and every wrong value, or that `changes` is no such mapping. After
+            `lattice` is varied once its actuators are those of the case, and there is no `lattice` any more.
         """
         wrong = [path for path in changes if not isinstance(path, str)] if isinstance(changes, Mapping) else [changes]
         if wrong:

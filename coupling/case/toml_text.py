@@ -7,7 +7,7 @@ import tomllib
 from collections import Counter
 from typing import Any, Final
 
-from coupling.case.table import Location, value_at
+from coupling.case.table import Location
 
 _TEXT: Final = r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\])*"|\'[^\']*\''
 _NAME: Final = rf"(?:{_TEXT}|[\w-]+)"
@@ -38,10 +38,6 @@ class TomlText:
             pieces += [self._text[done:start], new]
             done = end
         return "".join([*pieces, self._text[done:]])
-
-    def value(self, location: Location) -> Any:
-        """What the text had at a location; None: nothing."""
-        return value_at(self.tables, location)
 
     def lines(self) -> dict[Location, int]:
         """The line of each header, and of each key with all of its value."""

@@ -1,4 +1,4 @@
-"""Edit: the text of a case file with other values in it, and all else as somebody wrote it."""
+"""Edit the text of a case file: put other values into it, and leave all else to the byte."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.case import Case, read_case
 from coupling.case.fields import lattice_of
-from coupling.case.table import Location, Table
+from coupling.case.table import Location, Table, value_at
 from coupling.case.tables import CaseTables
 from coupling.case.toml_file import CaseError
 from coupling.case.toml_text import TomlText
@@ -54,7 +54,7 @@ def edited_text(text: str, here: Path, before: Case, after: Case, folder: Path) 
             for change in _changes(getattr(one, key), getattr(other, key), field.rebuild_annotation(), (key,)):
                 _put(file, *change)
         for location in FILES if here.resolve() != folder.resolve() else ():
-            if isinstance(name := file.value(location), str):
+            if isinstance(name := value_at(file.tables, location), str):
                 file.put(location, json.dumps(os.path.relpath(here / name, folder), ensure_ascii=False))
     except (_Rewritten, LookupError):
         return None
@@ -89,7 +89,7 @@ def _changes(old: Any, new: Any, annotation: Any, location: Location) -> Iterato
 
 def _put(file: TomlText, at: Location, annotation: Any, old: Any, new: Any) -> None:
     """Give a key, or an item of a list, another value; of a list as long as it was only the items that differ."""
-    there = file.value(at)
+    there = value_at(file.tables, at)
     if new is None:
         file.remove(at)
     elif isinstance(there, list) and isinstance(new, tuple) and len(there) == len(new) == len(old):
