@@ -59,8 +59,9 @@ _WORD: Final = re.compile(
 
 @dataclass(frozen=True)
 class Expression:
-    """An expression of the NAMES; ValueError where it is none."""
+    """An expression of the NAMES, `text` as it was written; ValueError where it is none."""
 
+    text: str
     source: str
 
     def __post_init__(self) -> None:
@@ -75,24 +76,30 @@ class Expression:
         except SyntaxError:
             raise ValueError("the expression is incomplete, or has an unknown sign") from None
 
-    def evaluate(self, names: Mapping[str, float]) -> float | bool:
-        """The value where the NAMES have these values; ValueError, saying why, when there is none."""
-        self._evaluator.names = names
+    def evaluate(self, names: Mapping[str, float], rule: str, is_condition: bool = False) -> Any:
+        """The value where the NAMES have these values; ValueError says what it must be, `rule`, and why it is not."""
+        self._evaluator.names, reason = names, ""
         try:
             value = self._evaluator.eval(self.source, self._tree)
-            return value if isinstance(value, bool) else float(value)
+            if is_condition and not isinstance(value, bool):
+                reason = "is a number and not a comparison"
+            elif not is_condition and isinstance(value, bool):
+                reason = "is a comparison and not a number"
+            elif not math.isfinite(float(value)):
+                reason = "is not finite"
         except ZeroDivisionError:
-            raise ValueError("divides by zero") from None
+            reason = "divides by zero"
         except OverflowError:
-            raise ValueError("is too large") from None
+            reason = "is too large"
         except RecursionError:
-            raise ValueError("is nested too deeply") from None
+            reason = "is nested too deeply"
         except (InvalidExpression, TypeError):
-            raise ValueError(
-                "has a function with the wrong number of arguments, or something that is not a number"
-            ) from None
+            reason = "has a function with the wrong number of arguments, or something that is not a number"
         except ValueError:  # What `math` says differs between versions of Python.
-            raise ValueError("has no real value") from None
+            reason = "has no real value"
+        if reason:
+            raise ValueError(f"must be {rule} for each actuator; {quoted(self.text)} {reason}")
+        return value
 
     @cached_property
     def _tree(self) -> ast.AST:
@@ -134,45 +141,26 @@ def unit_of(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Formula:
-    """An expression and its unit, for a quantity; `text` is both as written."""
+class Formula(Expression):
+    """An expression with a unit, for a quantity."""
 
-    text: str
-    expression: Expression
     unit: str
     scale: float  # of the unit in SI
     amount: Amount
 
     def value(self, names: Mapping[str, float]) -> float:
         """The value in SI units where the names have these values; ValueError, saying why, when there is none."""
-        try:
-            value = self.expression.evaluate(names)
-            if isinstance(value, bool):
-                raise ValueError("is a comparison and not a number")
-            if not math.isfinite(si := value * self.scale):
-                raise ValueError("is not finite")
-        except ValueError as error:
-            rule = f"must be {DIMENSIONS[self.amount.unit]} for each actuator"
-            raise ValueError(f"{rule}; {quoted(self.text)} {error}") from None
-        return self.amount.in_range(f"{value:g} {self.unit}", si)
+        value = float(self.evaluate(names, DIMENSIONS[self.amount.unit]))
+        return self.amount.in_range(f"{value:g} {self.unit}", value * self.scale)
 
 
 @dataclass(frozen=True)
-class Condition:
-    """An expression that is true or false; `text` is that as written."""
-
-    text: str
-    expression: Expression
+class Condition(Expression):
+    """An expression that is true or false."""
 
     def value(self, names: Mapping[str, float]) -> bool:
         """Whether it is true where the names have these values; ValueError, saying why, when it is neither."""
-        try:
-            value = self.expression.evaluate(names)
-            if not isinstance(value, bool):
-                raise ValueError("is a number and not a comparison")
-        except ValueError as error:
-            raise ValueError(f"must be true or false for each actuator; {quoted(self.text)} {error}") from None
-        return value
+        return bool(self.evaluate(names, "true or false", is_condition=True))
 
 
 @dataclass(frozen=True)
@@ -195,7 +183,7 @@ class Amount(Quantity):
         if re.fullmatch(r"[+-]?\s*[\d._eE+-]*", source):
             return super().parse(text)
         try:
-            return Formula(text, Expression(source), unit, self.value_of(text, "1", unit), self)
+            return Formula(text, source, unit, self.value_of(text, "1", unit), self)
         except ValueError as error:
             reason = str(error).partition(f"got {quoted(text)}")[2] or f": {error}"
             rule = "an expression with one unit, at its end"
@@ -227,7 +215,7 @@ def condition(value: object) -> Condition:
         source, rest = split(value) if isinstance(value, str) else ("", "")
         if rest:
             raise ValueError(f'"{rest}" is too much: a condition has no unit, and x and y are in metres')
-        return Condition(str(value), Expression(source))
+        return Condition(str(value), source)
     except ValueError as error:
         raise ValueError(f"must be {_CHOICE}; got {quoted(value)}: {error}") from None
 
