@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, Final
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, PlainValidator, WithJsonSchema
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, WithJsonSchema
 from pydantic_core import CoreSchema, core_schema
 from simpleeval import InvalidExpression, SimpleEval
 
@@ -162,6 +162,10 @@ class Condition(Expression):
         """Whether it is true where the names have these values; ValueError, saying why, when it is neither."""
         return bool(self.evaluate(names, "true or false", is_condition=True))
 
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(condition)  # a PlainValidator would load its source
+
 
 @dataclass(frozen=True)
 class Amount(Quantity):
@@ -220,4 +224,4 @@ def condition(value: object) -> Condition:
         raise ValueError(f"must be {_CHOICE}; got {quoted(value)}: {error}") from None
 
 
-Where = Annotated[Condition, PlainValidator(condition), Expected(_CHOICE), WithJsonSchema({"type": "string"})]
+Where = Annotated[Condition, Expected(_CHOICE), WithJsonSchema({"type": "string"})]
