@@ -9,4 +9,5 @@ from coupling.case.actuators.lattice import (
     gaps,
     half_size,
     must_be_inside,
+    outside,
 )

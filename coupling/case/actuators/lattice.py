@@ -11,6 +11,7 @@ from pydantic import Field, StrictInt
 from coupling.case.actuators.drive import ActuatorCase, DriveCase, Pushing, limit_faults
 from coupling.case.table import Contradictions, Faults, Table
 from coupling.case.values import (
+    UNITS_REQUIRED,
     Amount,
     Condition,
     Expected,
@@ -192,6 +193,16 @@ def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[Any]:
         except ValueError as error:
             raise Faults([(("lattice", key), f"{error} at {spot}")]) from None
     return found
+
+
+def outside(lattice: Mapping[str, Any], places: Sequence[Place]) -> str:
+    """The condition of a lattice, as a file has it, that leaves some of its places out as well."""
+    read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+    spots = {(spot.x, spot.y): spot for spot in read.spots()}
+    several = [key for key in ("row", "column") if lattice[f"{key}s"] > 1]
+    left = [" or ".join(f"{key} != {getattr(spots[place], key)}" for key in several) for place in places]
+    parts = [*([lattice["where"]] if "where" in lattice else []), *left]
+    return " and ".join(f"({part})" for part in parts) if len(parts) > 1 else "".join(parts)
 
 
 def half_size(mesh: PlateMesh) -> float:

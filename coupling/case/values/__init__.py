@@ -52,6 +52,7 @@ from coupling.case.values.quantities import (
 )
 from coupling.case.values.units import (
     DIMENSIONS,
+    LONGEST,
     UNITS_REQUIRED,
     Expected,
     Quantity,

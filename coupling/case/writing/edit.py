@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coupling.case.actuators import ActuatorCase, LatticeCase
+from coupling.case.actuators import ActuatorCase, LatticeCase, outside
 from coupling.case.case import Case, read_case
 from coupling.case.fields import lattice_of
+from coupling.case.scaled import rounded
 from coupling.case.table import Location, Table, value_at
 from coupling.case.tables import CaseTables
 from coupling.case.toml_file import CaseError
 from coupling.case.toml_text import TomlText
-from coupling.case.values import kinds_of_items
+from coupling.case.values import LONGEST, kinds_of_items
 from coupling.case.writing.text import FILES, block, case_text, commented, write_case, written
 from coupling.files import whole_file
+
+Actuators = tuple[ActuatorCase, ...]
 
 
 class _Rewritten(Exception):
@@ -35,9 +39,8 @@ def write_edited(case: Case, like: Case, folder: Path, path: Path, said: str = "
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole_file(path) as partial:
         partial.write_text(commented(said) + text, encoding="utf-8", newline="")
-        whole = case_text(case, path.parent)
-        if _whole_text_of(partial) != whole:
-            partial.write_text(commented(said) + whole, encoding="utf-8")
+        if not _is(case, partial):
+            partial.write_text(commented(said) + case_text(case, path.parent), encoding="utf-8")
     return path
 
 
@@ -49,7 +52,9 @@ def edited_text(text: str, here: Path, before: Case, after: Case, folder: Path) 
     try:
         file = TomlText(text)
         alone = _put_lattice(file, before, after, folder)
-        one, other = (case.model_copy(update={"actuators": case.actuators[:alone]}) for case in (before, after))
+        one, other = (
+            case.model_copy(update={"actuators": some}) for case, some in zip((before, after), alone, strict=True)
+        )
         for key, field in CaseTables.model_fields.items():
             for change in _changes(getattr(one, key), getattr(other, key), field.rebuild_annotation(), (key,)):
                 _put(file, *change)
@@ -61,12 +66,25 @@ def edited_text(text: str, here: Path, before: Case, after: Case, folder: Path) 
     return str(file)
 
 
-def _whole_text_of(file: Path) -> str | None:
-    """The case in a file as `write_case` would write it; None: there is none."""
+def _is(case: Case, file: Path) -> bool:
+    """Whether a file has a case, with its actuators in any order."""
     try:
-        return case_text(read_case(file), file.parent)
+        found = read_case(file)
     except CaseError:
-        return None
+        return False
+    return _in_order(found, file.parent) == _in_order(case, file.parent)
+
+
+def _in_order(case: Case, folder: Path) -> str:
+    """The text of a case whose actuators stand in the order of their places."""
+    actuators = sorted(map(_shortly, case.actuators), key=lambda one: one.position)
+    return case_text(case.model_copy(update={"actuators": tuple(actuators)}), folder)
+
+
+def _shortly(actuator: ActuatorCase) -> ActuatorCase:
+    """An actuator to 12 digits, as one of a lattice has places and drives that follow from others."""
+    floats = {key: rounded(value) for key, value in actuator if isinstance(value, float)}
+    return actuator.model_copy(update={**floats, "position": tuple(map(rounded, actuator.position))})
 
 
 def _changes(old: Any, new: Any, annotation: Any, location: Location) -> Iterator[tuple[Location, Any, Any, Any]]:
@@ -100,24 +118,46 @@ def _put(file: TomlText, at: Location, annotation: Any, old: Any, new: Any) -> N
         file.put(at, written(new, annotation, there))
 
 
-def _put_lattice(file: TomlText, before: Case, after: Case, folder: Path) -> int | None:
-    """Give a lattice what all of its actuators have now; where they differ, tables of their own replace it.
+def _put_lattice(file: TomlText, before: Case, after: Case, folder: Path) -> tuple[Actuators, Actuators]:
+    """Give a lattice what its actuators have now; returns those that are given one by one, before and after.
 
-    Returns how many actuators the file has one by one; None: all.
+    What most of them have becomes the lattice's. Others are left out of it, and get tables of their own; where that is
+    most of them, there is no lattice any more.
     """
     lattice, alone = lattice_of(before)
-    if lattice is None:
-        return None
     old, new = before.actuators[alone:], after.actuators[alone:]
-    shared = ActuatorCase.model_fields.keys() & LatticeCase.model_fields.keys()
-    same = {key: getattr(new[0], key) for key in shared if len({getattr(one, key) for one in new}) == 1}
-    if tuple(one.model_copy(update=same) for one in old) == new:
-        for key, value in same.items():
-            if any(getattr(one, key) != value for one in old):
-                _put(file, ("lattice", key), ActuatorCase.model_fields[key].rebuild_annotation(), None, value)
-    else:
-        units = {**lattice, "position": lattice["pitch"]}
-        lines = [span for location, span in file.statements.items() if location[0] == "lattice"]
-        tables = "\n\n".join(block("actuators", one, folder, units, brackets=2) for one in new)
+    if lattice is None or old == new:
+        return before.actuators, after.actuators
+    usual = _usual(old, new)
+    made = tuple(one.model_copy(update=usual) for one in old)
+    kept = {*made} & {*after.actuators}
+    where = outside(lattice, [one.position for one in made if one not in kept])
+    whole = 2 * len(kept) < len(made) or len(where) > LONGEST
+    others = tuple(one for one in after.actuators if whole or one not in kept)
+    if len(others) < alone:
+        raise _Rewritten
+    units = {**lattice, "position": lattice["pitch"]}
+    placed = [one.model_copy(update={"position": _shortly(one).position}) for one in others[alone:]]
+    tables = "\n\n".join(block("actuators", one, folder, units, brackets=2) for one in placed)
+    lines = [span for location, span in file.statements.items() if location[0] == "lattice"]
+    if whole:
         file.replace(lines[0][0], lines[-1][1], tables)
-    return alone
+        return before.actuators[:alone], others[:alone]
+    for key, value in usual.items():
+        _put(file, ("lattice", key), ActuatorCase.model_fields[key].rebuild_annotation(), getattr(old[0], key), value)
+    if where != lattice.get("where", ""):
+        file.put(("lattice", "where"), json.dumps(where))
+    if tables:
+        singles = [span for location, span in file.statements.items() if location[0] == "actuators"]
+        file.insert((singles or lines)[-1][1], "\n" + tables)
+    return before.actuators[:alone], others[:alone]
+
+
+def _usual(old: Actuators, new: Actuators) -> dict[str, Any]:
+    """What more of some actuators have in common now than have what they had."""
+    usual = {}
+    for key in LatticeCase.model_fields.keys() & ActuatorCase.model_fields.keys() if len(old) == len(new) else ():
+        value, count = Counter(getattr(one, key) for one in new).most_common(1)[0]
+        if count > sum(getattr(one, key) == getattr(other, key) for one, other in zip(old, new, strict=True)):
+            usual[key] = value
+    return usual

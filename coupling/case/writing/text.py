@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
@@ -106,7 +107,7 @@ def _in_unit_of(like: Any, value: float, quantity: Quantity) -> str:
         number = Decimal(f"{value / quantity.value_of(like, '1', unit):.12g}")
     text = f"{_plain(number)} {unit}"
     worse = not _readable(number) and "e" not in like.removesuffix(unit) + _in_usual_unit(value, quantity).split()[0]
-    return "" if worse or quantity.parse(text) != value else text
+    return "" if worse or not math.isclose(quantity.parse(text), value, rel_tol=1e-15) else text
 
 
 def _readable(number: Decimal) -> bool:

@@ -121,22 +121,57 @@ def test_a_lattice_takes_what_most_of_its_actuators_have(tmp_path):
     level = like.vary({"actuators.*.phase": "0.125 turn", "actuators.*.delay": "1 ms"})
     expected = OF_LATTICE.replace('"15 * (row + column) deg"\n', '"45 deg"\ndelay = "1 ms"\n')
     assert edited(level, like, tmp_path) == expected
+    drive = OF_LATTICE[OF_LATTICE.index('stroke = "1 um"') : OF_LATTICE.index("# How")]
+    heights = OF_LATTICE.replace(drive, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"]]  # up\n\n')
+    like = read(tmp_path, heights)
+    higher = like.vary({"actuators.*.table.1.1": "12 um"})
+    assert edited(higher, like, tmp_path) == heights.replace("9 um", "12 um")
 
 
-@pytest.mark.parametrize("first", ["lattice", "actuator"])
-def test_tables_replace_a_lattice_whose_actuators_differ(tmp_path, first):
-    one = '[[actuators]]\nposition = ["30 um", "30 um"]\nstroke = "1 um"\nfrequency = "1 Hz"\n\n'
-    like = read(tmp_path, OF_LATTICE.replace("# Nine", one + "# Nine") if first == "actuator" else OF_LATTICE)
-    alone = len(like.actuators) - 9
-    changes = {f"actuators.{alone}.stroke": "2500 nm", f"actuators.{alone + 4}.position.0": "10 um"}
-    text = edited(like.vary(changes), like, tmp_path)
-    before, after = like.source.split(LATTICE[LATTICE.index("[lattice]") :].rstrip("\n"))
+OWN = """
+[[actuators]]
+position = ["-0.06 mm", "-0.06 mm"]
+stroke = "2.5 um"
+frequency = "0.3 kHz"
+
+[[actuators]]
+position = ["0.01 mm", "0 mm"]
+stroke = "1 um"
+frequency = "0.3 kHz"
+phase = "30 deg"
+"""
+
+
+@pytest.mark.parametrize("condition", ["", 'where = "x + y < 100e-6"  # but one\n'])
+def test_actuators_that_leave_a_lattice_get_tables_of_their_own(tmp_path, condition):
+    text = OF_LATTICE.replace('deg"\n\n', f'deg"\n{condition}\n')
+    like = read(tmp_path, text)
+    left = "(row != 0 or column != 0) and (row != 1 or column != 1)"
+    where = condition.replace('"x + y < 100e-6"', f'"(x + y < 100e-6) and {left}"') or f'where = "{left}"\n'
+    expected = text.replace(f'deg"\n{condition}', f'deg"\n{where}{OWN}')
+    some = like.vary({"actuators.0.stroke": "2500 nm", "actuators.4.position.0": "10 um"})
+    file = write_edited(some, like, tmp_path, tmp_path / "second.toml")
+    assert file.read_text() == expected
+    again = read_case(file)
+    assert len(again.actuators) == len(like.actuators) and again.part == like.part
+    back = edited_places(write_edited(like, again, tmp_path, tmp_path / "third.toml"))
+    assert back == edited_places(tmp_path / "first.toml")  # taken back after it was saved
+    assert (tmp_path / "third.toml").read_text().startswith(text[: text.index("phase")])
+
+
+def edited_places(file):
+    return sorted(tuple(round(c, 15) for c in one.position) for one in read_case(file).actuators)
+
+
+def test_a_lattice_of_which_little_is_left_becomes_actuators_where_it_stood(tmp_path):
+    like = read(tmp_path, OF_LATTICE)
+    case = like.vary({f"actuators.{k}.stroke": f"{k + 1} um" for k in range(9)})
+    file = write_edited(case, like, tmp_path, tmp_path / "second.toml")
+    before, after = OF_LATTICE.split(LATTICE[LATTICE.index("[lattice]") :].rstrip("\n"))
+    text = file.read_text()
     assert text.startswith(before) and text.endswith(after) and "lattice" not in text
-    tables = text[len(before) : -len(after)].split("\n\n")
-    assert len(tables) == 9
-    keys = 'stroke = "2.5 um"\nfrequency = "0.3 kHz"'
-    assert tables[0] == f'[[actuators]]\nposition = ["-0.06 mm", "-0.06 mm"]\n{keys}'
-    assert tables[4].startswith('[[actuators]]\nposition = ["0.01 mm", "0 mm"]\nstroke = "1 um"\n')
+    assert text.count("[[actuators]]") == 9 and 'position = ["-0.06 mm", "-0.06 mm"]\nstroke = "1 um"' in text
+    assert [one.stroke for one in read_case(file).actuators] == [one.stroke for one in case.actuators]
 
 
 WRITTEN = """\
