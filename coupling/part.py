@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
+BLOCK = 50_000  # rows of a path whose curvatures are found together: 20 MB
 
 
 def build_friction(case: Case) -> Contact:
@@ -94,9 +95,10 @@ def part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, traject
     if size is None:
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
-    places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
-    hessians = np.concatenate([surface.evaluate(xy, t).hessian for xy, t in places])
-    return size * float(np.abs(np.linalg.eigvalsh(hessians)).max())
+    places, times = trajectory.position[on_plate], trajectory.time[on_plate]
+    blocks = (slice(start, start + BLOCK) for start in range(0, len(times), BLOCK))
+    hessians = (surface.evaluate_along(places[some], times[some]).hessian for some in blocks)
+    return size * max(float(np.abs(np.linalg.eigvalsh(block)).max()) for block in hessians)
 
 
 def top_face_share(contact: ContactSamples) -> float | None:

@@ -184,7 +184,11 @@ class SurfaceMotion:
         if not math.isfinite(time):
             raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
-        rows = self.samples(xy, np.full(len(xy), float(time)))
+        return self.evaluate_along(xy, np.full(len(xy), float(time)))
+
+    def evaluate_along(self, xy: FloatArray, times: FloatArray) -> SurfaceState:
+        """The surface at points (n, 2) [m], each at a time (n,) [s] of its own; raises as `evaluate` does."""
+        rows = self.samples(xy, times)
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
