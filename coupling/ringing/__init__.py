@@ -1,4 +1,3 @@
 """A plate that stretches and has mass: its modes ring while the membrane couples them."""
 
-from coupling.ringing.making import make_ringing_model
-from coupling.ringing.model import RingingModel
+from coupling.ringing.model import RingingModel, make_ringing_model

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from coupling.progress import doing
 from coupling.ringing.forces import Ringing, new_bench
-from coupling.ringing.march import march
-from coupling.ringing.pieces import lay_steps
+from coupling.ringing.march import lay_steps, march
 from coupling.stretch import FINE, NOT_STABLE, Corrections, Schedule, schedule_of
 from coupling.vibration import enter_jump
 from particle import AnyDrive

@@ -12,4 +12,5 @@ from coupling.scene.plate import (
     vibration_model,
 )
 from coupling.scene.platform import PlatformScene, platform_scene
-from coupling.scene.scene import Scene
+
+Scene = PlateScene | PlatformScene

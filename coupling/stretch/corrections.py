@@ -85,7 +85,7 @@ def correction_drives(
         time.
     """
     n, m = len(plate.stiffness), len(plate.in_plane)
-    scales = [_weights(name, given, count) for name, given, count in _scales(weights, in_plane_weights, n, m)]
+    scales = [_weights("weights", weights, n), _weights("in_plane_weights", in_plane_weights, m)]
     wrong = [scale for scale in scales if isinstance(scale, str)]
     if len(drives) != plate.drive_count:
         wrong.append(f"Input drives must be one for each of the plate's, {plate.drive_count}; got {len(drives)}")
@@ -130,12 +130,6 @@ def correction_drives(
         equilibria=solved + more,
         period=None if loop is None else float(times.edges[-1] - times.edges[times.loop]),
     )
-
-
-def _scales(
-    weights: ArrayLike | None, in_plane_weights: ArrayLike | None, n: int, m: int
-) -> list[tuple[str, ArrayLike | None, int]]:
-    return [("weights", weights, n), ("in_plane_weights", in_plane_weights, m)]
 
 
 def _weights(name: str, given: ArrayLike | None, count: int) -> FloatArray | str:

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch.interval import Moment
-from coupling.stretch.vectors import add_rows, clear, copy, dot
+from coupling.stretch.interval import Moment, add_rows, clear, copy, dot
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_device_no_arrays, kernel_inlined, kernel_no_arrays
 

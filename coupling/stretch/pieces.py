@@ -24,7 +24,7 @@ from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, n
 from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_device, kernel_device_no_arrays
-from particle.drives import ORDER, DriveTable, evaluate_piece
+from particle.drives import ORDER, DriveTable, evaluate_piece, quintic_end
 
 FloatArray = NDArray[np.float64]
 
@@ -237,9 +237,7 @@ def _between(left: FloatArray, right: FloatArray, share: float, out: FloatArray,
         rise = right[0, j] - left[0, j]
         v_0, v_1 = length * left[1, j], length * right[1, j]
         a_0, a_1 = length**2 * left[2, j], length**2 * right[2, j]
-        third = 10 * rise - 6 * v_0 - 4 * v_1 - 1.5 * a_0 + 0.5 * a_1
-        fourth = -15 * rise + 8 * v_0 + 7 * v_1 + 1.5 * a_0 - a_1
-        fifth = 6 * rise - 3 * v_0 - 3 * v_1 - 0.5 * a_0 + 0.5 * a_1
+        third, fourth, fifth = quintic_end(rise, v_0, v_1, a_0, a_1)
         value = (((fifth * share + fourth) * share + third) * share + 0.5 * a_0) * share + v_0
         out[0, j] = value * share + left[0, j]
 
@@ -286,6 +284,4 @@ def lay_piece(left: FloatArray, right: FloatArray, length: float, out: FloatArra
         v_0, v_1 = length * left[1, j], length * right[1, j]
         a_0, a_1 = length**2 * left[2, j], length**2 * right[2, j]
         out[j, 0], out[j, 1], out[j, 2] = left[0, j], v_0, 0.5 * a_0
-        out[j, 3] = 10 * rise - 6 * v_0 - 4 * v_1 - 1.5 * a_0 + 0.5 * a_1
-        out[j, 4] = -15 * rise + 8 * v_0 + 7 * v_1 + 1.5 * a_0 - a_1
-        out[j, 5] = 6 * rise - 3 * v_0 - 3 * v_1 - 0.5 * a_0 + 0.5 * a_1
+        out[j, 3], out[j, 4], out[j, 5] = quintic_end(rise, v_0, v_1, a_0, a_1)

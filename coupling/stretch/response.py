@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 
-from coupling.stretch.interval import Moment, new_moment
+from coupling.stretch.interval import Moment, add_rows, clear, new_moment
 from coupling.stretch.newton import FINE, fill_motions, find_equilibrium, new_state
-from coupling.stretch.vectors import add_rows, clear
 from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import kernel, kernel_device, kernel_device_no_arrays
 from particle.drives import ORDER, evaluate_piece

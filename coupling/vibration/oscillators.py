@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle import kernel, kernel_device_no_arrays, kernel_no_arrays
-from particle.drives import ORDER, DriveTable, drive_piece
+from particle.drives import ORDER, DriveTable, drive_piece, quintic_end
 
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-13  # of a drive's height or velocity: what is no jump
-CUBIC = 4  # coefficients of the forced part
 # A quintic with the value and first two derivatives of a sine of angular frequency w at both ends, t apart, is off in
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
 HERMITE_ERROR = 3 / 8 / 720
@@ -224,6 +223,4 @@ def _quintic(a: FloatArray, b: FloatArray, scale: float, out: FloatArray) -> Non
     rise, v_0, v_1 = b[0] - a[0], scale * a[1], scale * b[1]
     a_0, a_1 = scale**2 * a[2], scale**2 * b[2]
     out[0], out[1], out[2] = a[0], v_0, 0.5 * a_0
-    out[3] = 10.0 * rise - 6.0 * v_0 - 4.0 * v_1 - 1.5 * a_0 + 0.5 * a_1
-    out[4] = -15.0 * rise + 8.0 * v_0 + 7.0 * v_1 + 1.5 * a_0 - a_1
-    out[5] = 6.0 * rise - 3.0 * v_0 - 3.0 * v_1 - 0.5 * a_0 + 0.5 * a_1
+    out[3], out[4], out[5] = quintic_end(rise, v_0, v_1, a_0, a_1)

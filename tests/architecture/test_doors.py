@@ -84,7 +84,7 @@ RULE = [
     ("coupling.run", "from coupling.case import Case", True),
     ("coupling.run", "from coupling.case.table import Table", False),
     ("coupling.case.case", "from coupling.suggestion import near", True),
-    ("coupling.case.case", "from coupling.scene.scene import Scene", False),
+    ("coupling.case.case", "from coupling.scene.plate import PlateScene", False),
     ("coupling.case.case", "from particle.simulation import simulate", False),
     ("coupling.case.case", "import particle.simulation", False),
     ("coupling.case.case", "from particle import simulate, friction", True),

@@ -8,7 +8,7 @@ import pytest
 from coupling.case import MAX_STRETCHING
 from coupling.drives import stroke_heights
 from coupling.stretch import Stretch, make_model
-from coupling.stretch.making import training
+from coupling.stretch.model import training
 from coupling.stretch.store import FOLDER
 from fem_plate import Plate, PlateSection
 from meshes import disc
@@ -92,7 +92,7 @@ def test_extremes_are_those_of_states(stretch, large):
 
 
 def test_a_model_is_read_from_disk_and_gives_the_same(model, large, monkeypatch):
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: pytest.fail("the plate is solved again"))
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: pytest.fail("the plate is solved again"))
     again = model_of(large)
     assert again.mesh_error == model.mesh_error
     xy = RADIUS * np.array([[0.2, -0.3]])
@@ -100,7 +100,7 @@ def test_a_model_is_read_from_disk_and_gives_the_same(model, large, monkeypatch)
 
 
 def test_a_model_serves_other_frequencies_and_delays_of_the_same_strokes(model, large, monkeypatch):
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: pytest.fail("the plate is solved again"))
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: pytest.fail("the plate is solved again"))
     others = [Drive(THICKNESS, 700.0, "up-down", delay=1e-3), Drive(-0.6 * THICKNESS, 250.0, "up-down")]
     model_of(large, others)
 
@@ -108,7 +108,7 @@ def test_a_model_serves_other_frequencies_and_delays_of_the_same_strokes(model, 
 def test_a_folder_that_cannot_be_written_to_is_no_hindrance(model, large, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv(FOLDER, str(tmp_path / "file"))
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: model.reduction)
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: model.reduction)
     assert model_of(large).reduction is model.reduction
 
 
@@ -116,7 +116,7 @@ def test_a_folder_that_cannot_be_written_to_is_no_hindrance(model, large, tmp_pa
 def test_a_broken_file_is_made_anew(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     made = []
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: made.append(1) or model.reduction)
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: made.append(1) or model.reduction)
     model_of(large)
     (kept,) = tmp_path.glob("*.npz")
     kept.write_bytes(kept.read_bytes()[:1000])
@@ -128,7 +128,7 @@ def test_a_broken_file_is_made_anew(model, large, tmp_path, monkeypatch):
 def test_a_file_of_something_else_is_made_anew(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     made = []
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: made.append(1) or model.reduction)
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: made.append(1) or model.reduction)
     model_of(large)
     (kept,) = tmp_path.glob("*.npz")
     np.savez(kept, stiffness=np.eye(2))
@@ -141,7 +141,7 @@ def test_a_file_of_something_else_is_made_anew(model, large, tmp_path, monkeypat
 @pytest.mark.slow
 def test_an_interrupted_or_killed_write_leaves_no_model(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
-    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: model.reduction)
+    monkeypatch.setattr("coupling.stretch.model.reduce", lambda *_: model.reduction)
 
     def interrupted(file, **arrays):
         file.write(b"half")
@@ -166,9 +166,9 @@ def test_bars_read_what_is_being_done(model, large, tmp_path, monkeypatch):
         return model.reduction
 
     monkeypatch.setenv(FOLDER, str(tmp_path))
-    monkeypatch.setattr("coupling.stretch.making.reduce", solved)
+    monkeypatch.setattr("coupling.stretch.model.reduce", solved)
     heard = []
-    monkeypatch.setattr("coupling.stretch.making.doing", lambda text, share=0.0: heard.append((text, share)))
+    monkeypatch.setattr("coupling.stretch.model.doing", lambda text, share=0.0: heard.append((text, share)))
     model_of(large)
     assert heard == [
         ("stretching plate: choosing its cells", 0.0),
