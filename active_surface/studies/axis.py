@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
+from active_surface.parameter import Parameter
 from coupling.case import Field
 
 
@@ -22,6 +24,11 @@ class Axis:
     low: float = 0.0
     high: float = 0.0
     logarithmic: bool = False
+
+    @cached_property
+    def array(self) -> NDArray[Any]:
+        """Its values (n,)."""
+        return np.array(self.values, self.kind)
 
     @property
     def kind(self) -> Any:
@@ -37,10 +44,9 @@ class Axis:
     def spread(self, units: FloatArray) -> NDArray[Any]:
         """Its values (n,) at places (n,) in [0, 1)."""
         if self.values:
-            return np.array(self.values, dtype=self.kind)[(units * len(self.values)).astype(np.int64)]
-        if self.logarithmic:
-            return self.low * (self.high / self.low) ** units
-        return self.low + (self.high - self.low) * units
+            return self.array[(units * len(self.values)).astype(np.int64)]
+        values: FloatArray = Parameter(self.field, self.low, self.high, self.logarithmic).value(units)
+        return values
 
 
 def spaced(low: float, high: float, count: int, logarithmic: bool) -> tuple[float, ...]:

@@ -1,40 +1,44 @@
 """One sweep, from study to results: this file reads as the pipeline.
 
-study -> paths kept of an earlier sweep -> chunks of the others -> their records -> chunks on disk -> check of the model
+study -> paths kept of an earlier sweep -> chunks of the others -> their records -> table on disk -> check of the model
 -> one file of all -> picture
 """
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from active_surface.arrays import IntArray
-from active_surface.studies.chunk_store import ChunkStore
 from active_surface.studies.cluster import records_on
-from active_surface.studies.dataset import read_dataset, renew_labels, write_dataset
 from active_surface.studies.engine import Engine
-from active_surface.studies.growth import Kept, kept_paths
-from active_surface.studies.lock import alone_in
 from active_surface.studies.pictures import draw_sweep
-from active_surface.studies.record import KIND, OUTCOMES, Records
-from active_surface.studies.stored import differences, key_of
+from active_surface.studies.record import OUTCOMES
 from active_surface.studies.study import Study
+from active_surface.studies.sweep_file import (
+    differences,
+    finished_paths,
+    key_of,
+    keys_of,
+    read_dataset,
+    renew_labels,
+    slabs,
+    write_sweep,
+)
+from active_surface.studies.sweep_table import SweepTable, sweep_table
 from active_surface.studies.validity import model_warnings
 from coupling import ProgressCallback, no_progress
+from coupling.case import quoted
 
 if TYPE_CHECKING:
     import xarray
 
 ENDING = ".nc"
-AT_ONCE = 65536  # paths whose records are written together
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +86,8 @@ def run_study(
 ) -> Sweep:
     """Follow all paths of a study.
 
-    Chunks of finished paths are kept in NAME.sweep of the output folder until all are done; an interrupted sweep
-    resumes from them. If NAME.nc holds the same numbers, no path is computed again; other labels rewrite the file. If
+    Finished paths are kept in the file NAME.sweep of the output folder until all are done; an interrupted sweep resumes
+    from them. If NAME.nc holds the same numbers, no path is computed again; other labels rewrite the file. If
     it holds some of the study's paths and no others, as after values, points, repeats or an axis were added, these are
     kept and the rest is computed: the results have the bits of a sweep made at once.
 
@@ -110,7 +114,7 @@ def run_study(
     Raises
     ------
     ValueError
-        NAME.nc or NAME.sweep holds something else.
+        NAME.nc or NAME.sweep is something else or damaged, or the study is none.
     RuntimeError
         Another process sweeps in the folder by that name.
     OSError
@@ -118,6 +122,8 @@ def run_study(
     KeyboardInterrupt
         Ctrl-C.
     """
+    if not isinstance(study, Study):
+        raise ValueError(f"Input study of run_study must be a Study, as read_study makes it; got {quoted(study)}")
     if output is None:
         with tempfile.TemporaryDirectory() as folder:
             file, _ = _results_file(study, Path(folder), threads, tell, scheduler, False)
@@ -129,91 +135,57 @@ def run_study(
     return Sweep(study, dataset, (file, picture), kept)
 
 
-def _kept(study: Study, file: Path, overwrite: bool) -> Kept:
-    """The paths of a study that its file has; raises ValueError when its results would replace something else."""
-    known = key_of(file)
-    if file.exists() and known is None:
-        free = "free of files of other kinds"
-        raise ValueError(f"Input output must be {free}; got {file.parent}, whose {file.name} is no sweep")
-    kept = kept_paths(study, file)
-    if known is None or overwrite or (kept.whole and not kept.lost):
-        return kept
-    others = " and ".join(differences(study, file))
-    what = "replaces it"
-    if len(kept.numbers):
-        others += f", {kept.lost} of which are not in this study"
-        what = f"drops these and keeps the other {len(kept.numbers)} paths"
-    wrong = f"whose {file.name} is of other {others}: --overwrite {what}"
-    raise ValueError(f"Input output must be free of other results; got {file.parent}, {wrong}")
-
-
-def _files(study: Study, folder: Path) -> tuple[Path, Path]:
-    """The file of all results in a folder, and the folder of chunks."""
-    return folder / f"{study.name}{ENDING}", folder / f"{study.name}.sweep"
-
-
 def _results_file(
     study: Study, folder: Path, threads: int | None, tell: ProgressCallback, scheduler: str | None, overwrite: bool
 ) -> tuple[Path, int]:
     """Compute what is missing in a folder; returns the file of all results there, and how many paths it had before."""
-    (file, chunks), key = _files(study, folder), study.key
-    if chunks.exists() and not chunks.is_dir():
-        free = "free of files of other kinds"
-        raise ValueError(f"Input output must be {free}; got {folder}, whose {chunks.name} is no folder")
-    store = ChunkStore(chunks / key[:16], key)
-    with alone_in(chunks):
-        if key_of(file) == key:
+    file = folder / f"{study.name}{ENDING}"
+    with sweep_table(folder / f"{study.name}.sweep") as table:
+        if key_of(file) == study.key:
             renew_labels(study, file)
             kept = len(study.points)
         else:
-            found = _kept(study, file, overwrite)
-            kept = len(found.numbers)
+            kept = _keep(study, file, table, overwrite)
             engine = Engine(study, threads)
-            _compute(engine, found, store, tell, scheduler)
-            pieces = chain(found.records(file), store.load())
-            write_dataset(study, _in_order(len(study.points), pieces, store), file, model_warnings(engine))
-        store.clear()
+            _compute(engine, table, tell, scheduler)
+            counts = (math.prod(piece.stop - piece.start for piece in slab) for slab in slabs(study.points.shape))
+            write_sweep(study, table.records(counts), file, model_warnings(engine))
+        table.clear()
     return file, kept
 
 
-def _compute(engine: Engine, kept: Kept, store: ChunkStore, tell: ProgressCallback, scheduler: str | None) -> None:
-    """Compute the paths that are neither kept nor in the store."""
-    missing = np.ones(engine.paths, dtype=bool)
-    missing[kept.numbers] = False
-    for numbers, _ in store.load():
-        missing[numbers] = False
-    chunks = engine.chunks(np.flatnonzero(missing))
+def _keep(study: Study, file: Path, table: SweepTable, overwrite: bool) -> int:
+    """Keep the paths of a study that its file has, and return how many these are.
+
+    Raises ValueError when the study's results would replace something else.
+    """
+    table.ask(keys_of(study))
+    if key_of(file) is None:
+        if file.exists():
+            free = "free of files of other kinds"
+            raise ValueError(f"Input output must be {free}; got {file.parent}, whose {file.name} is no sweep")
+        return 0
+    kept, lost = table.keep(finished_paths(study, file))
+    if not overwrite and (lost or not kept):
+        others, what = " and ".join(differences(study, file)), "replaces it"
+        if kept:
+            others += f", {lost} of which are not in this study"
+            what = f"drops these and keeps the other {kept} paths"
+        wrong = f"whose {file.name} is of other {others}: --overwrite {what}"
+        raise ValueError(f"Input output must be free of other results; got {file.parent}, {wrong}")
+    return kept
+
+
+def _compute(engine: Engine, table: SweepTable, tell: ProgressCallback, scheduler: str | None) -> None:
+    """Compute the paths that the table lacks."""
+    table.commit()
+    chunks = engine.chunks(table.missing())
     done = engine.paths - sum(map(len, chunks))
     if done:
         tell(done, engine.paths)
     finished = engine.records_of(chunks) if scheduler is None else records_on(scheduler, engine, chunks)
     with closing(finished):
         for numbers, records in finished:
-            store.save(numbers, records)
+            table.add(numbers, records)
             done += len(records)
             tell(done, engine.paths)
-
-
-def _in_order(
-    paths: int, pieces: Iterable[tuple[IntArray, Records]], store: ChunkStore
-) -> Iterator[tuple[int, Records]]:
-    """Yield lots of records in the order of their paths: the number of the first path of each lot, and its records.
-
-    They are put in order in a file, so that memory does not grow with them.
-    """
-    store.folder.mkdir(parents=True, exist_ok=True)
-    missing = np.ones(paths, dtype=bool)
-    with tempfile.TemporaryFile(dir=store.folder) as scratch:
-        for numbers, records in pieces:
-            missing[numbers] = False
-            cuts = np.flatnonzero(np.diff(numbers) != 1) + 1
-            for first, run in zip(np.append(numbers[:1], numbers[cuts]).tolist(), np.split(records, cuts), strict=True):
-                scratch.seek(first * KIND.itemsize)
-                scratch.write(run.tobytes())
-        if missing.any():
-            gone = f"{missing.sum()} paths from {missing.argmax()} on are gone"
-            raise OSError(f"{store.folder}: {gone}; the same command computes them again")
-        scratch.seek(0)
-        for first in range(0, paths, AT_ONCE):
-            content = scratch.read(min(AT_ONCE, paths - first) * KIND.itemsize)
-            yield first, np.frombuffer(content, KIND)

@@ -14,9 +14,8 @@ from pydantic import TypeAdapter
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
-from active_surface.studies.dataset import LOGARITHMIC, read_dataset
 from active_surface.studies.points import longest
-from active_surface.studies.stored import key_of, whole
+from active_surface.studies.sweep_file import LOGARITHMIC, key_of, read_dataset, whole
 from active_surface.studies.threshold import Threshold, read_threshold
 from coupling.case import Field
 

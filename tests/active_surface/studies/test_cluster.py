@@ -177,7 +177,7 @@ def test_a_scheduler_that_goes_is_one_clear_error(tmp_path, monkeypatch):
     options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": ":0"}
     with distributed.LocalCluster(**options) as going, pytest.raises(RuntimeError, match="is gone; the same command"):
         run_study(study, tmp_path, tell=lambda done, of: going.close(), scheduler=going.scheduler_address)
-    assert list(tmp_path.rglob("*.chunk"))
+    assert (tmp_path / "study.sweep").exists()
 
 
 def test_without_dask_the_command_says_how_to_get_it(tmp_path, monkeypatch):

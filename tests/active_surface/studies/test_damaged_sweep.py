@@ -10,7 +10,7 @@ from sweeps import PLATFORM
 
 from active_surface.cli import main
 from active_surface.studies import read_study, read_sweep, run_study
-from active_surface.studies.stored import key_of
+from active_surface.studies.sweep_file import key_of
 
 STUDY = """[study]
 case = "base.toml"
@@ -65,8 +65,8 @@ def huge(file):
 
 
 DAMAGES = [
-    (attribute("key", 5), "it has no text key"),
-    (attribute("axes", [1, 2]), "it has no text axes"),
+    (attribute("key", 5), "a text in it is none"),
+    (attribute("axes", [1, 2]), "a text in it is none"),
     (attribute("axes", "nothing"), "it cannot be read to its end"),
     (attribute("traits", "[]"), "its traits are no dict"),
     (attribute("study", "= ["), "it cannot be read to its end"),

@@ -14,7 +14,7 @@ from sweeps import LATTICE, PLATE, PLATFORM, written
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
-from active_surface.studies.growth import kept_paths
+from active_surface.studies.sweep_file import finished_paths, keys_of
 from active_surface.studies.variants import heights_key
 from coupling import batch
 
@@ -96,8 +96,10 @@ def test_what_paths_follow_from_is_compared(change, tmp_path):
         "another seed": ("seed = 9\n" + before, PLATFORM),
         "another case": (before, PLATFORM.replace("20 nN", "21 nN")),
     }[change]
-    kept = kept_paths(read_study(written(tmp_path, after, case)), tmp_path / "out" / "study.nc")
-    assert len(kept.numbers) == 0 and not kept.whole
+    study, file = read_study(written(tmp_path, after, case)), tmp_path / "out" / "study.nc"
+    assert list(finished_paths(study, file)) == []
+    with pytest.raises(ValueError, match="whose study.nc is of other .*: --overwrite replaces it"):
+        run_study(study, tmp_path / "out")
 
 
 def test_refused_points_and_texts_are_kept_too(tmp_path, monkeypatch):
@@ -156,10 +158,16 @@ def test_displacements_follow_the_point_wherever_it_is(tmp_path, sampling):
     assert np.array_equal(few.displacements(range(len(few))).reshape(-1, 2, 2), same)
 
 
-def stopped(command, folder, chunks, number):
-    """The exit code of a sweep that got a signal when it had so many chunks; its errors."""
+def finished(table, study):
+    """How many paths of a study are in the file of a table that is in use: a key is there once for each table."""
+    content = table.read_bytes() if table.exists() else b""
+    return sum(content.count(key) > 1 for key in keys_of(study))
+
+
+def stopped(command, table, study, paths, number):
+    """The exit code of a sweep that got a signal when so many paths were finished; its errors."""
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        while len(list(folder.rglob("[0-9]*.chunk"))) < chunks:
+        while finished(table, study) < paths:
             assert process.poll() is None
             time.sleep(0.002)
         process.send_signal(number)
@@ -172,17 +180,17 @@ def test_a_growing_sweep_that_is_killed_and_interrupted_loses_neither_the_old_no
     random = 'sampling = "random"\npoints = {}\n' + re.sub(r"values.*", 'range = ["1e-9 kg", "9e-9 kg"]', MASS)
     case, folder = PLATFORM.replace('"2 ms"', '"2 s"'), tmp_path / "out"
     run_study(read_study(written(tmp_path, random.format(4), case)), folder).dataset.close()
-    before = (folder / "study.nc").read_bytes()
+    before, table = (folder / "study.nc").read_bytes(), folder / "study.sweep"
     study = read_study(written(tmp_path, random.format(16), case))
     command = [sys.executable, "-m", "active_surface", "sweep", str(tmp_path / "study.toml"), "-o", str(folder), "-q"]
-    assert stopped(command, folder, 1, signal.SIGKILL)[0] == -signal.SIGKILL
-    kept = {file: file.read_bytes() for file in folder.rglob("[0-9]*.chunk")}
-    code, errors = stopped(command, folder, len(kept) + 1, signal.SIGINT)
+    assert stopped(command, table, study, 5, signal.SIGKILL)[0] == -signal.SIGKILL
+    killed = finished(table, study)
+    code, errors = stopped(command, table, study, killed + 1, signal.SIGINT)
     assert (code, errors) == (130, "interrupted; the same command goes on where this one stopped\n")
     assert (folder / "study.nc").read_bytes() == before
-    assert all(file.read_bytes() == content for file, content in kept.items())
-    done, told = len(list(folder.rglob("[0-9]*.chunk"))), []
-    sweep = run_study(study, folder, tell=lambda paths, of: told.append(paths))
-    assert told[0] >= 4 + done and sweep.kept == 4
+    done, counts = finished(table, study), []
+    assert done > killed >= 5
+    sweep = run_study(study, folder, tell=lambda paths, of: counts.append(paths))
+    assert counts[0] == done and sweep.kept == 4
     run_study(study, tmp_path / "fresh")
     assert (folder / "study.nc").read_bytes() == (tmp_path / "fresh" / "study.nc").read_bytes()

@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
-from active_surface.studies import read_study
+from active_surface.studies import read_study, sweep_file
 from active_surface.studies.axis import spaced
-from active_surface.studies.stored import slabs
 from active_surface.studies.variants import case_at
 from coupling import InputError, ground_key, read_case
 
@@ -148,13 +147,12 @@ def test_a_contradiction_at_one_point_is_found_there(tmp_path):
             assert case_at(study, values).friction.coefficient == values[0]
 
 
-@given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.data())
+@given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.integers(1, 30))
 @settings(max_examples=200, deadline=None)
-def test_slabs_cover_a_run_of_elements_in_order(shape, data):
-    array = np.arange(int(np.prod(shape))).reshape(shape)
-    start = data.draw(st.integers(0, array.size))
-    stop = data.draw(st.integers(start, array.size))
-    pieces = [(array[slab].ravel(), count) for slab, count in slabs(shape, start, stop)]
-    assert all(len(piece) == count for piece, count in pieces)
-    assert np.array_equal(np.concatenate([[], *(piece for piece, _ in pieces)]), np.arange(start, stop))
-    assert len(pieces) <= 2 * len(shape)
+def test_slabs_cover_an_array_in_order(shape, at_once):
+    array = np.arange(np.prod(shape)).reshape(shape)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sweep_file, "AT_ONCE", at_once)
+        pieces = [array[slab].ravel() for slab in sweep_file.slabs(shape)]
+    assert np.array_equal(np.concatenate(pieces), array.ravel())
+    assert max(map(len, pieces)) <= at_once

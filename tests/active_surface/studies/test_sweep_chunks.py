@@ -1,37 +1,76 @@
-"""Chunks of a sweep: how long they are, which are computed anew, and what their key covers."""
+"""Chunks of a sweep: which are computed anew, where their records are kept, and what their key covers."""
 
 import re
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
 from sweeps import PLATFORM, SHAKEN, same, written
 
 from active_surface.studies import read_study, run_study
-from active_surface.studies.chunk_store import ChunkStore
-from active_surface.studies.dataset import read_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.record import new_records
-from active_surface.studies.saved import read_sweep
+from active_surface.studies.sweep_file import read_dataset, read_sweep
+from active_surface.studies.sweep_table import sweep_table
 
 pytestmark = pytest.mark.usefixtures("without_pictures")
 
 
-def test_a_chunk_that_is_foreign_or_torn_counts_as_none(tmp_path):
-    store = ChunkStore(tmp_path / "chunks", "ab" * 32)
-    assert list(store.load()) == []
-    records = new_records(3)
-    records["end_x"] = [1.0, 2.0, np.nan]
-    store.save(np.array([1, 4, 5]), records)
-    ((numbers, loaded),) = store.load()
-    assert numbers.tolist() == [1, 4, 5] and loaded.tobytes() == records.tobytes()
-    assert list(ChunkStore(tmp_path / "chunks", "ac" * 32).load()) == []
-    (file,) = (tmp_path / "chunks").iterdir()
+KEYS = [bytes([number]) * 16 for number in range(6)]
+
+
+def test_a_table_finds_records_by_what_their_paths_follow_from(tmp_path):
+    file, records = tmp_path / "made" / "study.sweep", new_records(6)
+    records["end_x"] = [1.0, 2.0, np.nan, 4.0, 5.0, 6.0]
+    with sweep_table(file) as table:
+        table.ask(KEYS[:4])
+        assert table.missing().tolist() == [0, 1, 2, 3]
+        table.add(np.array([1, 3]), records[[1, 3]])
+    with sweep_table(file) as table:  # a study with other paths, and an earlier sweep that has some of them
+        table.ask([KEYS[3], KEYS[5], KEYS[2], KEYS[1], KEYS[5]])
+        assert table.missing().tolist() == [1, 2, 4]
+        assert table.keep([(KEYS[4:], records[4:])]) == (2, 1)
+        table.add(np.array([2]), records[[2]])
+        assert table.missing().tolist() == []
+        lots = [lot.tobytes() for lot in table.records([2, 3])]
+        assert lots == [records[[3, 5]].tobytes(), records[[2, 1, 5]].tobytes()]
+        table.clear()
+    assert not file.exists()
+
+
+def test_what_is_not_committed_is_undone(tmp_path):
+    records = new_records(6)
+    with pytest.raises(KeyboardInterrupt), sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS)
+        table.add(np.array([0]), records[:1])
+        table.keep([(KEYS[1:], records[1:])])
+        raise KeyboardInterrupt
+    with sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS)
+        assert table.missing().tolist() == [1, 2, 3, 4, 5]
+
+
+def test_a_damaged_table_is_one_clear_error_and_stays(tmp_path):
+    file = tmp_path / "study.sweep"
+    records = new_records(6)
+    records["end_x"] = 0.123456789
+    with sweep_table(file) as table:
+        table.ask(KEYS)
+        table.add(np.arange(6), records)
     whole = file.read_bytes()
-    for torn in (b"", whole[:10], whole[:-1], whole[:-9] + bytes([whole[-9] ^ 1]) + whole[-8:]):
+    place = whole.rindex(records["end_x"][0].tobytes())
+    for torn in (b"mine", whole[:100], whole[: len(whole) // 2], whole[:place] + b"?" + whole[place + 1 :]):
         file.write_bytes(torn)
-        assert list(store.load()) == []
-    store.clear()
-    assert list(tmp_path.iterdir()) == []
+        with pytest.raises(ValueError, match=r"study.sweep: must be .* it is damaged, or something else: remove it"):
+            with sweep_table(file) as table:
+                table.ask(KEYS)
+                next(table.records([6]))
+        assert len(file.read_bytes()) >= len(torn)
+    with closing(sqlite3.connect(tmp_path / "other.sweep")) as other:
+        other.execute("CREATE TABLE mine (what)")
+    with pytest.raises(ValueError, match="something else"), sweep_table(tmp_path / "other.sweep"):
+        pass
 
 
 def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):
@@ -50,10 +89,6 @@ def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkey
     monkeypatch.setattr(Engine, "records", counted)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path / "out")
-    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == [
-        "0000000000-0000000002.chunk",
-        "0000000002-0000000004.chunk",
-    ]
     asked.clear()
     told = []
     sweep = run_study(study, tmp_path / "out", tell=lambda done, of: told.append((done, of)))

@@ -1,6 +1,5 @@
 """Files of sweeps: nothing is lost or replaced unasked, and nothing of another sweep is taken."""
 
-import errno
 import os
 import shutil
 import subprocess
@@ -14,11 +13,11 @@ from click.testing import CliRunner
 from sweeps import PLATFORM, written
 
 from active_surface.cli.program import main
-from active_surface.studies import dataset, read_study, run_study
-from active_surface.studies.chunk_store import ChunkStore
+from active_surface.studies import read_study, run_study, sweep_file
 from active_surface.studies.engine import Engine
-from active_surface.studies.lock import alone_in
-from active_surface.studies.record import COLUMNS
+from active_surface.studies.record import COLUMNS, new_records
+from active_surface.studies.sweep_file import keys_of
+from active_surface.studies.sweep_table import sweep_table
 from coupling import environment as versions
 from coupling.progress import CountBar
 
@@ -49,13 +48,14 @@ def test_a_file_of_another_kind_is_not_replaced(tmp_path):
     assert (tmp_path / "study.nc").read_text() == "mine"
 
 
-def test_chunks_of_any_paths_are_used(tmp_path, monkeypatch):
+def test_finished_paths_are_used_whichever_they_are(tmp_path, monkeypatch):
     made = read_study(written(tmp_path, MASS, PLATFORM))
     expected = run_study(made).dataset["distance"].values
     assert len(set(expected)) == 9
     whole = Engine(made).records(range(9))
-    store = ChunkStore(tmp_path / "out" / "study.sweep" / made.key[:16], made.key)
-    store.save(np.array([2, 6, 8]), whole[[2, 6, 8]])
+    with sweep_table(tmp_path / "out" / "study.sweep") as table:
+        table.ask(keys_of(made))
+        table.add(np.array([2, 6, 8]), whole[[2, 6, 8]])
     monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 4)
     computed, records = [], Engine.records
     monkeypatch.setattr(
@@ -113,37 +113,35 @@ def test_the_picture_of_a_run_is_not_replaced(tmp_path):
     assert (tmp_path / "out" / "study.png").read_text() == "mine"
 
 
-def test_chunks_go_only_when_all_results_are_on_disk(tmp_path, monkeypatch):
+def test_the_table_goes_only_when_all_results_are_on_disk(tmp_path, monkeypatch):
     synced, fsync = [], os.fsync
 
     def noted(descriptor):
         fsync(descriptor)
-        place = Path(os.readlink(f"/proc/self/fd/{descriptor}"))
-        synced.append(
-            (place.name, len(list((tmp_path / "out").rglob("*.chunk"))), (tmp_path / "out/study.nc").exists())
-        )
+        there = [(tmp_path / "out" / name).exists() for name in ("study.sweep", "study.nc")]
+        synced.append((Path(os.readlink(f"/proc/self/fd/{descriptor}")).name, *there))
 
     monkeypatch.setattr(os, "fsync", noted)
     run_study(read_study(written(tmp_path, MASS, PLATFORM)), tmp_path / "out")
-    assert synced == [("study.partial.nc", 1, False), ("out", 1, True)]
+    assert synced == [("study.partial.nc", True, False), ("out", True, True)]
     assert names(tmp_path) == ["study.nc", "study.sweep.png"]
 
 
-HOLD = """\
+IN_USE = """\
 import pathlib, sys
-from active_surface.studies.lock import alone_in
-with alone_in(pathlib.Path(sys.argv[1])):
-    print("held", flush=True)
+from active_surface.studies.sweep_table import sweep_table
+with sweep_table(pathlib.Path(sys.argv[1])):
+    print("in use", flush=True)
     sys.stdin.readline()
 """
 
 
 def test_two_sweeps_at_once_do_not_meet(tmp_path):
-    chunks = tmp_path / "out" / "study.sweep"
-    arguments = [sys.executable, "-c", HOLD, str(chunks)]
+    table = tmp_path / "out" / "study.sweep"
+    arguments = [sys.executable, "-c", IN_USE, str(table)]
     for end in ("line", "kill"):
         with subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
-            assert other.stdout.readline() == "held\n"
+            assert other.stdout.readline() == "in use\n"
             done = swept(tmp_path)
             assert done.exit_code == 2
             assert done.output == f"main sweep: another sweep of this name is running in {tmp_path / 'out'}\n"
@@ -151,62 +149,63 @@ def test_two_sweeps_at_once_do_not_meet(tmp_path):
                 other.kill()
             else:
                 other.communicate("\n")
-    assert chunks.exists()  # of the one that was killed
+    assert table.exists()  # of the one that was killed
     assert swept(tmp_path).exit_code == 0
     assert names(tmp_path) == ["study.nc", "study.sweep.png"]
 
 
-def test_a_lock_keeps_what_else_is_in_its_folder(tmp_path):
-    with alone_in(tmp_path / "a"):
-        (tmp_path / "a" / "chunk").touch()
-    assert [file.name for file in (tmp_path / "a").iterdir()] == ["chunk"]
-
-
-def test_a_lock_leaves_no_folder_that_was_made_for_it(tmp_path):
+def test_an_empty_table_leaves_no_folder_that_was_made_for_it(tmp_path):
     (tmp_path / "mine").mkdir()
-    with alone_in(tmp_path / "mine" / "a" / "b"):
+    with sweep_table(tmp_path / "mine" / "a" / "b" / "study.sweep"):
         pass
     assert list((tmp_path / "mine").iterdir()) == []
 
 
-def test_a_full_disk_is_told_before_the_results_are_written_and_chunks_are_kept(tmp_path, monkeypatch):
+def test_a_full_disk_is_named_before_the_results_are_written_and_finished_paths_are_kept(tmp_path, monkeypatch):
     usage = shutil.disk_usage(tmp_path)
     with monkeypatch.context() as patch:
         patch.setattr(shutil, "disk_usage", lambda folder: usage._replace(free=1000))
         done = swept(tmp_path)
     assert done.exit_code == 2
-    assert f"{tmp_path / 'out'}: the results take 3.1 MB, and 0.0 MB are free; finished chunks are kept" in done.output
-    assert len(list((tmp_path / "out").rglob("*.chunk"))) == 1 and not list((tmp_path / "out").glob("*.nc"))
+    assert f"{tmp_path / 'out'}: the results take 3.1 MB, and 0.0 MB are free; finished paths are kept" in done.output
+    assert names(tmp_path) == ["study.sweep"]
     monkeypatch.setattr(Engine, "records", None)
     assert swept(tmp_path).exit_code == 0
 
 
-def test_a_disk_that_is_full_while_chunks_are_kept_is_told(tmp_path, monkeypatch):
-    def full(path, content):
-        path.touch()
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    store = ChunkStore(tmp_path / "chunks", "ab" * 32)
-    with pytest.raises(OSError, match=f"^{tmp_path / 'chunks'}: No space left on device; finished chunks are kept"):
-        store.save(np.arange(3), np.zeros(3))
-    assert not list((tmp_path / "chunks").iterdir())
+def test_a_disk_that_is_full_while_paths_are_kept_is_named(tmp_path):
+    file = tmp_path / "study.sweep"
+    with pytest.raises(OSError, match=f"^{file}: database or disk is full; finished paths are kept there"):
+        with sweep_table(file) as table:
+            table.ask(bytes([number]) * 16 for number in range(200))
+            table.add(np.arange(2), new_records(2))
+            table._database.execute("PRAGMA max_page_count = 1")
+            table.add(np.arange(2, 200), new_records(198))
+    with sweep_table(file) as table:
+        table.ask(bytes([number]) * 16 for number in range(200))
+        assert table.missing().tolist() == list(range(2, 200))
 
 
 def test_results_that_cannot_be_written_leave_no_part(tmp_path, monkeypatch):
     def broken(*_):
         raise OSError("broken")
 
-    monkeypatch.setattr(dataset, "_write_axes", broken)
+    monkeypatch.setattr(sweep_file, "_write_axes", broken)
     assert swept(tmp_path).exit_code == 2
     assert not list((tmp_path / "out").glob("*.nc"))
 
 
-def test_a_file_in_the_place_of_the_chunks_is_told(tmp_path):
+def test_what_stands_in_the_place_of_the_table_stays(tmp_path):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "study.sweep").write_text("mine")
+    table = tmp_path / "out" / "study.sweep"
+    table.write_text("mine")
     done = swept(tmp_path)
-    assert done.exit_code == 2 and "whose study.sweep is no folder" in done.output
+    assert done.exit_code == 2 and "it is damaged, or something else: remove it" in done.output
+    assert table.read_text() == "mine"
+    table.unlink()
+    table.mkdir()
+    done = swept(tmp_path)
+    assert done.exit_code == 2 and "whose study.sweep is one: remove it" in done.output and table.is_dir()
 
 
 @pytest.mark.parametrize("sampling", ["", 'sampling = "list"\n', 'sampling = "random"\npoints = 3\n'])

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
-from active_surface.studies.dataset import read_dataset, write_dataset
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.heat import edges
 from active_surface.studies.pictures.map import compose, draw_sweep
 from active_surface.studies.pictures.scatter import CELLS, _draw_nearest
 from active_surface.studies.pictures.selection import Scale, Selection
 from active_surface.studies.record import OUTCOMES, new_records
+from active_surface.studies.sweep_file import read_dataset, write_sweep
 
 
 def axis(field, values, name=""):
@@ -40,7 +40,7 @@ def made(tmp_path, text, case=PLATE):
     records["distance"], records["end_x"], records["end_y"] = k * 1e-6, 75e-6, 0.0
     records["outcome"] = k % 2
     records["distance"][0], records["outcome"][0] = np.nan, OUTCOMES.index("refused")
-    path = write_dataset(study, [(0, records[:1]), (1, records[1:])], tmp_path / "found.nc")
+    path = write_sweep(study, [records], tmp_path / "found.nc")
     return study, read_dataset(path)
 
 

@@ -8,13 +8,11 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study, run_study
-from active_surface.studies.dataset import read_dataset, write_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.pictures.findings import Findings, read_findings
 from active_surface.studies.pictures.map import compose
 from active_surface.studies.record import OUTCOMES, new_records
-from active_surface.studies.saved import read_sweep
-from active_surface.studies.stored import key_of
+from active_surface.studies.sweep_file import key_of, read_dataset, read_sweep, write_sweep
 from active_surface.studies.threshold import Threshold, lowest, read_threshold
 from coupling.case import CaseError
 
@@ -101,7 +99,7 @@ def drawn(tmp_path, threshold):
     records["outcome"] = 0
     figure = Figure()
     FigureCanvasAgg(figure)
-    dataset = read_dataset(write_dataset(study, [(0, records)], tmp_path / "found.nc"))
+    dataset = read_dataset(write_sweep(study, [records], tmp_path / "found.nc"))
     compose(figure, Findings.of(study.name, dataset, study.threshold))
     figure.canvas.draw()
     return figure
