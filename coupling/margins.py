@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.drives import stroke_heights
 from coupling.part import build_part
 from coupling.scene import PlateScene, Scene
 from particle import (
@@ -30,6 +31,7 @@ FloatArray = NDArray[np.float64]
 PER_STROKE: Final = 24  # moments in the shortest stroke
 LOSSES: Final = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE)  # that end a path
 MAX_NAMED: Final = 1000  # events whose actuators are sought
+MAX_SHARES: Final = 500_000  # of actuators at places that are found at once: 30 MB
 
 
 @dataclass(frozen=True)
@@ -103,10 +105,10 @@ def margin_curves(case: Case, surface: SurfaceMotion, trajectory: Trajectory, fr
 def event_actuators(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> NDArray[np.int64]:
     """The actuator (e,) whose stroke counts most when the part slips or comes off; -1: none, or another event."""
     path, numbers = _Path(case, scene.surface, trajectory, friction), np.full(len(trajectory.events), -1)
-    for k, event in enumerate(trajectory.events[:MAX_NAMED]):
-        if event.kind in (EventKind.SLIPS, EventKind.DETACHES):
-            actuator = _actuator(scene, path, np.array(event.position), event.time, event.kind)
-            numbers[k] = -1 if actuator is None else actuator
+    for kind in (EventKind.SLIPS, EventKind.DETACHES):
+        rows = [k for k, event in enumerate(trajectory.events[:MAX_NAMED]) if event.kind is kind]
+        places = np.array([trajectory.events[k].position for k in rows]).reshape(-1, 2)
+        numbers[rows] = _actuators(scene, path, places, np.array([trajectory.events[k].time for k in rows]), kind)
     return numbers
 
 
@@ -141,30 +143,37 @@ class _Path:
 
 
 def _margin(scene: Scene, path: _Path, extreme: Extreme, kind: EventKind) -> Margin:
-    place = path.trajectory.at([extreme.time]).position[0]
-    at = (float(place[0]), float(place[1]))
-    return Margin(extreme.value, extreme.time, at, _actuator(scene, path, place, extreme.time, kind))
+    place = path.trajectory.at([extreme.time]).position
+    at = (float(place[0, 0]), float(place[0, 1]))
+    actuator = int(_actuators(scene, path, place, np.array([extreme.time]), kind)[0])
+    return Margin(extreme.value, extreme.time, at, None if actuator < 0 else actuator)
 
 
-def _actuator(scene: Scene, path: _Path, place: FloatArray, time: float, kind: EventKind) -> int | None:
-    """The actuator whose stroke counts most for slipping or detaching at a place [m] and time [s]; None: none does.
+def _actuators(scene: Scene, path: _Path, places: FloatArray, times: FloatArray, kind: EventKind) -> NDArray[np.int64]:
+    """The actuators (k,) whose strokes count most for slipping or detaching at places (k, 2) [m] and times (k,) [s].
 
     What an actuator does is taken from its influence shape, without the plate's inertia and stretching. It lessens the
     load by how it accelerates the place downwards. By how much the pull grows with its stroke is (3.4) in
-    docs/motion.md, for small slopes.
+    docs/motion.md, for small slopes. -1: none of them counts.
     """
-    if not isinstance(scene, PlateScene) or scene.shapes.outline.gap(place[None])[0] < 0:
-        return None
-    height, _, acceleration = (
-        np.array(rows) for rows in zip(*(lift.evaluate(time) for lift in scene.lifts), strict=True)
-    )
-    (value,), (gradient,), _ = scene.shapes.evaluate(place[None])  # of each actuator alone (N,) and (N, 2)
-    shares = -value * acceleration
-    if kind is EventKind.SLIPS:
-        state, centre = scene.surface.evaluate(place[None], time), path.part.centre
-        b, slope = path.part.gravity + float(state.w_tt[0]), state.gradient[0]
-        pull = -b * slope + centre * state.gradient_tt[0]
-        tilts = -b * gradient * height[:, None] + centre * gradient * acceleration[:, None]
-        each = tilts - np.outer(value * acceleration, slope)
-        shares = each @ pull / (np.hypot(*pull) or 1.0)
-    return int(np.argmax(shares)) if shares.max() > 0 else None
+    numbers = np.full(len(times), -1)
+    if not isinstance(scene, PlateScene):
+        return numbers
+    on_plate = np.flatnonzero(scene.shapes.outline.gap(places) >= 0)
+    at_once = max(1, MAX_SHARES // len(scene.lifts))
+    for rows in (on_plate[start : start + at_once] for start in range(0, len(on_plate), at_once)):
+        xy, at = places[rows], times[rows]
+        value, gradient, _ = scene.shapes.evaluate(xy)  # of each actuator alone, (k, N) and (k, N, 2)
+        acceleration = stroke_heights(scene.lifts, at, 2)
+        shares = -value * acceleration
+        if kind is EventKind.SLIPS:
+            state, centre = scene.surface.evaluate_along(xy, at), path.part.centre
+            b, slope = (path.part.gravity + state.w_tt)[:, None], state.gradient
+            pull = -b * slope + centre * state.gradient_tt
+            height = stroke_heights(scene.lifts, at)
+            tilts = -b[..., None] * gradient * height[..., None] + centre * gradient * acceleration[..., None]
+            each = tilts - (value * acceleration)[..., None] * slope[:, None]
+            length = np.hypot(*pull.T)
+            shares = (each @ pull[..., None])[..., 0] / np.where(length > 0, length, 1.0)[:, None]
+        numbers[rows] = np.where(shares.max(axis=1) > 0, shares.argmax(axis=1), -1)
+    return numbers
