@@ -59,6 +59,17 @@ def surface():
     return surface_motion(Corrected(), DRIVES, half_thickness=5e-6, in_plane_drives=PLANAR)
 
 
+def test_points_at_times_of_their_own_are_those_at_one_time_each(surface):
+    xy = np.random.default_rng(1).uniform(-0.6 * RADIUS, 0.6 * RADIUS, (20, 2))
+    times = np.linspace(0.0, 9e-3, 20)
+    along = surface.evaluate_along(xy, times)
+    for k, time in enumerate(times.tolist()):
+        for values, value in zip(along, surface.evaluate(xy[k], time), strict=True):
+            assert values[k] == pytest.approx(value[0], rel=1e-11, abs=1e-13 * np.abs(values).max())
+    with pytest.raises(ValueError, match="Input xy of evaluate must lie on the surface"):
+        surface.evaluate_along(np.array([[0.0, 0.0], [2 * RADIUS, 0.0]]), np.zeros(2))
+
+
 @pytest.fixture(scope="module")
 def places():
     """Places (n, 2) all over the disc, up to its rim."""
