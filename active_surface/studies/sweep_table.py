@@ -30,7 +30,7 @@ TABLES: Final = (
     "CREATE TABLE asked (number INTEGER PRIMARY KEY, key BLOB)",
 )
 IN_ORDER: Final = """\
-SELECT asked.key, record, checksum FROM asked LEFT JOIN finished
+SELECT record, checksum FROM asked LEFT JOIN finished
 ON finished.rowid = (SELECT rowid FROM finished WHERE finished.key = asked.key LIMIT 1) ORDER BY number
 """
 
@@ -51,7 +51,8 @@ class SweepTable:
         Returns how many paths of the study are among these, and how many of these are not in the study.
         """
         for keys, records in lots:
-            self._insert(keys, records, earlier=True)
+            rows = ((key, *row) for key, row in zip(keys, _rows(records), strict=True))
+            self._database.executemany("INSERT INTO finished VALUES (?, ?, ?, TRUE)", rows)
         return (
             self._count("asked WHERE key IN (SELECT key FROM finished WHERE earlier)"),
             self._count("finished WHERE earlier AND key NOT IN (SELECT key FROM asked)"),
@@ -64,9 +65,8 @@ class SweepTable:
 
     def add(self, numbers: IntArray, records: Records) -> None:
         """Keep the records of finished paths of these numbers, safe on disk."""
-        one = "SELECT key FROM asked WHERE number = ?"
-        keys = [self._database.execute(one, (number,)).fetchone()[0] for number in numbers.tolist()]
-        self._insert(keys, records, earlier=False)
+        rows = ((*row, number) for row, number in zip(_rows(records), numbers.tolist(), strict=True))
+        self._database.executemany("INSERT INTO finished SELECT key, ?, ?, FALSE FROM asked WHERE number = ?", rows)
         self.commit()
 
     def commit(self) -> None:
@@ -80,9 +80,9 @@ class SweepTable:
         rows = self._database.execute(IN_ORDER)
         for count in counts:
             some = rows.fetchmany(count)
-            if any(record is None or checksum != zlib.crc32(key + record) for key, record, checksum in some):
+            if any(record is None or checksum != zlib.crc32(record) for record, checksum in some):
                 raise sqlite3.DatabaseError
-            yield np.frombuffer(b"".join(record for _, record, _ in some), KIND)
+            yield np.frombuffer(b"".join(record for record, _ in some), KIND)
 
     def clear(self) -> None:
         """Drop all finished paths."""
@@ -94,15 +94,15 @@ class SweepTable:
         """Whether no path is finished."""
         return not self._count("finished")
 
-    def _insert(self, keys: list[bytes], records: Records, earlier: bool) -> None:
-        rows = ((key, record.tobytes()) for key, record in zip(keys, records, strict=True))
-        self._database.executemany(
-            "INSERT INTO finished VALUES (?, ?, ?, ?)",
-            ((key, record, zlib.crc32(key + record), earlier) for key, record in rows),
-        )
-
     def _count(self, rows: str) -> int:
         return int(self._database.execute(f"SELECT count(*) FROM {rows}").fetchone()[0])
+
+
+def _rows(records: Records) -> Iterator[tuple[bytes, int]]:
+    """Yield each record and its checksum."""
+    for record in records:
+        data = record.tobytes()
+        yield data, zlib.crc32(data)
 
 
 @contextmanager
