@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.studies.axis import Axis
+from active_surface.studies.axes import Axis
 
 Sampling = Literal["grid", "list", "random", "sobol"]
 SAMPLED, JITTERED = 0, 1  # independent streams of random numbers

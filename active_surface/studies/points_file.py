@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from coupling.case import Field, Value, quoted
 from coupling.case.values import by_line, first_of, name_and_unit, read_rows, unreadable
@@ -24,17 +24,13 @@ class Column(NamedTuple):
 
 
 class PointsFile(NamedTuple):
-    """The columns of a file, and what is wrong with it."""
+    """The columns of a file by their names, and what is wrong with it."""
 
     name: str
-    columns: Sequence[Column]
+    columns: Mapping[str, Column]
     lines: Sequence[int]  # of its rows, from 1; of a parquet file the rows' own numbers
     line: str  # what these are called
     mistakes: Sequence[str]
-
-    def told(self, wrong: Sequence[str]) -> list[str]:
-        """Mistakes with the file's name."""
-        return [f"in {self.name}: {message}" for message in wrong]
 
     def read(self, field: Field, column: Column) -> tuple[list[Value], list[tuple[int, str]]]:
         """The values of a field, in SI units, and by line what is wrong with the others."""
@@ -49,7 +45,7 @@ class PointsFile(NamedTuple):
 
     def by_line(self, wrong: Sequence[tuple[int, str]]) -> list[str]:
         """Mistakes in the order of their lines, the first of many."""
-        return self.told(first_of([text.replace("line", self.line, 1) for text in by_line(wrong)]))
+        return [f"in {self.name}: {text}" for text in first_of([f"{self.line}{text[4:]}" for text in by_line(wrong)])]
 
 
 def read_points_file(path: Path) -> PointsFile:
@@ -58,22 +54,34 @@ def read_points_file(path: Path) -> PointsFile:
     Below a header that names the columns, each with a unit in brackets if its numbers are not in SI units, there is a
     line for each point. Empty lines of a CSV file and those that begin with # are left out.
     """
+    parquet = path.suffix.lower() == ".parquet"
     try:
-        return _parquet(path) if path.suffix.lower() == ".parquet" else _csv(path)
+        read = _parquet_rows(path) if parquet else read_rows(path, EXAMPLE)
     except (OSError, ValueError) as error:
-        return PointsFile(path.name, [], [], "line", [unreadable(path.name, error)])
-
-
-def _csv(path: Path) -> PointsFile:
-    read = read_rows(path, EXAMPLE)
+        return PointsFile(path.name, {}, [], "line", [unreadable(path.name, error)])
     if isinstance(read, str):
-        return PointsFile(path.name, [], [], "line", [f"in {path.name}: {read}"])
-    lines = [line for line, _ in read.rows]
-    columns = [[cells[k] for _, cells in read.rows] for k in range(len(read.header))]
-    return _file(path, read.header, columns, lines, "line", read.header_line, read.mistakes)
+        return PointsFile(path.name, {}, [], "line", [f"in {path.name}: {read}"])
+    header, header_line, rows, uneven = read
+    columns: dict[str, Column] = {}
+    wrong = []
+    for k, cell in enumerate(header):
+        name, unit = name_and_unit(cell)
+        if not name:
+            wrong.append("has a column without a name; pandas leaves its index out with index=False")
+        elif name in columns:
+            wrong.append(f"has two columns {quoted(name)}")
+        else:
+            columns[name] = Column(name, unit, [cells[k] for _, cells in rows])
+    head = "the header" if parquet else f"line {header_line}"
+    told = [f"in {path.name}: {head} {message}" for message in dict.fromkeys(wrong)]
+    if not rows and not uneven:
+        told.append(f"in {path.name}: has no points below its header")
+    file = PointsFile(path.name, columns, [line for line, _ in rows], "row" if parquet else "line", told)
+    return file._replace(mistakes=[*told, *file.by_line(uneven)])
 
 
-def _parquet(path: Path) -> PointsFile:
+def _parquet_rows(path: Path) -> tuple[list[str], int, list[tuple[int, Sequence[object]]], list[tuple[int, str]]]:
+    """The names of the columns, and the rows with their numbers from 1, as of `read_rows`."""
     try:
         import pandas
         import pyarrow  # noqa: F401
@@ -83,30 +91,8 @@ def _parquet(path: Path) -> PointsFile:
         table = pandas.read_parquet(path, engine="pyarrow")
     except pyarrow.ArrowException as error:
         raise ValueError(f"it is no parquet file ({str(error).splitlines()[0]})") from None
-    columns = [table[name].tolist() for name in table.columns]
-    return _file(path, [str(name) for name in table.columns], columns, list(range(1, len(table) + 1)), "row", None, [])
-
-
-def _file(
-    path: Path,
-    header: Sequence[str],
-    cells: Sequence[Sequence[object]],
-    lines: Sequence[int],
-    word: str,
-    at: int | None,
-    uneven: Sequence[tuple[int, str]],
-) -> PointsFile:
-    head = "the header" if at is None else f"line {at}"
-    columns = [Column(*name_and_unit(name), one) for name, one in zip(header, cells, strict=True)]
-    wrong = []
-    if any(not column.name for column in columns):
-        wrong.append(f"{head} has a column without a name; pandas leaves its index out with index=False")
-    doubled = {column.name for k, column in enumerate(columns) if column.name in {one.name for one in columns[:k]}}
-    wrong += [f"{head} has two columns {quoted(name)}" for name in sorted(doubled)]
-    file = PointsFile(path.name, [column for column in columns if column.name], lines, word, [])
-    if not lines and not uneven:
-        wrong.append("has no points below its header")
-    return file._replace(mistakes=[*file.told(wrong), *file.by_line(uneven)])
+    cells = [table.iloc[:, k].tolist() for k in range(len(table.columns))]
+    return [str(name) for name in table.columns], 0, list(enumerate(zip(*cells, strict=True), 1)), []
 
 
 def _value(field: Field, cell: object, unit: str | None) -> Value:
@@ -132,14 +118,3 @@ def _number(cell: object) -> float | None:
         return float(cell)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return None
-
-
-def tables_of(file: PointsFile, axes: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """The axes of a study, each with its column as values, and one more for each other column; None: it has none."""
-    columns = {column.name: column for column in file.columns}
-    tables: list[Mapping[str, Any]] = []
-    for table in axes:
-        name = next((name for name in (table["name"], table["field"]) if isinstance(name, str) and name in columns), "")
-        tables.append({**table, "values": columns.pop(name, None)})
-    keys = {"range": None, "count": None, "spacing": "linear", "name": None}
-    return [*tables, *({**keys, "field": name, "values": column} for name, column in columns.items())]

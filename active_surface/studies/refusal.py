@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-import numpy as np
-
 from active_surface.arrays import FloatArray
 from active_surface.studies.study import Study
 from active_surface.studies.variants import case_at
@@ -20,21 +18,7 @@ from coupling.case import (
 )
 from particle.friction import Contact
 
-TRIED = 64  # points, before the work begins
 LAWS = 256  # kept
-
-
-def all_refused(study: Study) -> str:
-    """What is wrong where every point of a study that is tried is refused; "" where one is not."""
-    places = np.unique(np.linspace(0, len(study.points) - 1, TRIED).astype(np.int64)).tolist()
-    first = ""
-    for k in places:
-        messages = refusals(study, k)
-        if not messages:
-            return ""
-        first = first or "; ".join(messages)
-    tried = "every point" if len(places) == len(study.points) else f"each of {len(places)} points that were tried"
-    return f"lead to a case that cannot be run at {tried}: {first}"
 
 
 def refusals(study: Study, k: int) -> list[str]:

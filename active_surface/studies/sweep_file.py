@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
 import math
-import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,15 +16,14 @@ import h5py
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.axis import Axis
+from active_surface.studies.axes import Axis
 from active_surface.studies.points import Points
-from active_surface.studies.read import read_study
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.study import Study, versions
 from active_surface.studies.variants import heights_key
 from common import UNREADABLE, check_hdf5, survives
 from coupling import check_room, whole_file
-from coupling.case import Case, CaseError, PlateCase, find_field, lattice_of, read_case
+from coupling.case import Case, PlateCase, find_field, lattice_of
 from meshes import rim_curves
 
 if TYPE_CHECKING:
@@ -39,7 +36,6 @@ LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers
 AT_ONCE: Final = 65536  # records that are read or written together, about
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
 ROOM: Final = 1_000_000  # bytes, for what does not grow with the points
-EXPECTED: Final = "Input path must be a result of `active-surface sweep`"
 Slab = tuple[slice, ...]
 
 
@@ -59,27 +55,29 @@ def write_sweep(study: Study, lots: Iterable[Records], path: Path, warnings: Seq
     needed = 2 * KIND.itemsize * len(points) + coordinates + ROOM
     check_room(path.parent, needed, "; finished paths are kept, and the same command goes on from them")
     sizes = points.dimensions
-    with whole_file(path, path.with_suffix(f".partial{path.suffix}"), synced=True) as partial:
-        with h5netcdf.File(partial, "w") as file:
-            file.dimensions = sizes
-            file.attrs.update(_about(study), warnings="\n".join(warnings))
-            _write_axes(file, points)
-            for name, column in COLUMNS.items():
-                fill = float("nan") if column.kind == "f8" else None
-                variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=fill)
-                variable.attrs["long_name"] = column.meaning
-                variable.attrs["coordinates"] = " ".join(axis.name for axis in points.axes)
-                if column.unit:
-                    variable.attrs["units"] = column.unit
-            file["outcome"].attrs.update(
-                flag_values=np.arange(len(OUTCOMES), dtype="i1"),
-                flag_meanings=" ".join(outcome.replace(" ", "_") for outcome in OUTCOMES),
-                sentences="\n".join(SENTENCES),
-            )
-            for slab, records in zip(slabs(points.shape), lots, strict=True):
-                shape = [piece.stop - piece.start for piece in slab]
-                for name in COLUMNS:
-                    file[name][slab] = records[name].reshape(shape)
+    with (
+        whole_file(path, path.with_suffix(f".partial{path.suffix}"), synced=True) as partial,
+        h5netcdf.File(partial, "w") as file,
+    ):
+        file.dimensions = sizes
+        file.attrs.update(_about(study), warnings="\n".join(warnings))
+        _write_axes(file, points)
+        for name, column in COLUMNS.items():
+            fill = float("nan") if column.kind == "f8" else None
+            variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=fill)
+            variable.attrs["long_name"] = column.meaning
+            variable.attrs["coordinates"] = " ".join(axis.name for axis in points.axes)
+            if column.unit:
+                variable.attrs["units"] = column.unit
+        file["outcome"].attrs.update(
+            flag_values=np.arange(len(OUTCOMES), dtype="i1"),
+            flag_meanings=" ".join(outcome.replace(" ", "_") for outcome in OUTCOMES),
+            sentences="\n".join(SENTENCES),
+        )
+        for slab, records in zip(slabs(points.shape), lots, strict=True):
+            shape = [piece.stop - piece.start for piece in slab]
+            for name in COLUMNS:
+                file[name][slab] = records[name].reshape(shape)
     return path
 
 
@@ -295,43 +293,3 @@ def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Datase
     renamed = dataset.rename(names).assign_attrs(axes=" ".join(axes))
     renamed.set_close(dataset.close)
     return renamed
-
-
-def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Dataset]:
-    """The study whose results a netCDF file has, and these, read on demand until closed.
-
-    study: that study, if its file is at hand; None: it is read from the text in the results.
-    Raises ValueError when there is no such file or it is something else or of another study, and when its case
-    reads files that do not exist.
-    """
-    if not path.is_file():
-        raise ValueError(f"{EXPECTED}; got {path}, and there is no such file")
-    if key_of(path) is None:
-        raise ValueError(f"{EXPECTED}; got {path}, which is something else")
-    if study is not None:
-        others = [name for name in differences(study, path) if name != "versions"]
-        if others:
-            raise ValueError(f"{EXPECTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
-        return study, read_dataset(path, [axis.name for axis in study.points.axes])
-    with whole(path):
-        dataset = read_dataset(path)
-    if not dataset.attrs["study"]:
-        raise ValueError(f"{EXPECTED}; got {path}, whose study was made without a file")
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        files = {kind: folder / kind / f"{path.stem}.toml" for kind in ("study", "case")}
-        for kind, file in files.items():
-            file.parent.mkdir()
-            file.write_text(dataset.attrs[kind], encoding="utf-8")
-        with whole(path), (folder / "points.csv").open("w", encoding="utf-8", newline="") as file:
-            if dataset.attrs["sampling"] == "list":  # whose values may be in a file that is elsewhere
-                names = dataset.attrs["axes"].split()
-                rows = csv.writer(file)
-                rows.writerow(dataset[name].attrs["field"] for name in names)
-                rows.writerows(zip(*(dataset[name].values.tolist() for name in names), strict=True))
-        try:
-            return read_study(files["study"], read_case(files["case"]), folder / "points.csv"), dataset
-        except CaseError as error:
-            raise ValueError(
-                f"{path}: the study in it cannot be read; give the study file in its place\n{error}"
-            ) from error

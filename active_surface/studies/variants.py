@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from active_surface.studies.axis import Axis
+from active_surface.studies.axes import Axis
 from active_surface.studies.points import Points
 from active_surface.studies.study import Study
 from coupling import answers_drives, build_drives

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.axis import Axis
+from active_surface.studies.axes import Axis
 from active_surface.studies.points import longest
 from active_surface.studies.sweep_file import LOGARITHMIC, key_of, read_dataset, whole
 from active_surface.studies.threshold import Threshold, read_threshold

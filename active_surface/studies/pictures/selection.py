@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
-from active_surface.studies.axis import Axis, counted
+from active_surface.studies.axes import Axis, counted
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.record import COLUMNS, OUTCOMES
 from common import Unit, unit_for

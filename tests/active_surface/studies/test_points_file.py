@@ -9,7 +9,7 @@ from sweeps import LATTICE, PLATFORM, written
 
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
-from active_surface.studies.sweep_file import read_sweep
+from active_surface.studies.read import read_sweep
 from coupling.case import CaseError
 
 STUDY = 'points = "points.csv"\n'

@@ -77,7 +77,7 @@ def test_a_field_that_there_is_not_is_told(tmp_path, field, message):
         ('values = ["1 um", "1000 nm"]', "must differ from each other; got 1e-06 m twice"),
         ('values = ["1 um"]\ncount = 3', "axes[0].count must not be given with values; it belongs to a range"),
         ('values = ["1 um"]\nrange = ["1 um", "2 um"]', "axes[0].range must not be given with values"),
-        ("", "axes[0].values is missing; it must be a list of values, or have range and count in its place"),
+        ("", "axes[0].values is missing; give a list of values, or a range and a count"),
         (
             'range = ["0 um", "2 um"]\ncount = 3\nspacing = "logarithmic"',
             'must have values above 0 with spacing = "logarithmic"',

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from active_surface.parameter import Parameter
 from active_surface.studies import read_study, sweep_file
-from active_surface.studies.axis import spaced
+from active_surface.studies.axes import spaced
 from active_surface.studies.variants import case_at
 from coupling import InputError, ground_key, read_case
 
@@ -57,7 +58,7 @@ def test_a_list_goes_along_all_axes_at_once(tmp_path):
 
 @given(st.integers(2, 40), st.integers(2, 9), st.floats(1e-9, 1e9), st.floats(1e-9, 1e9), st.booleans())
 def test_equal_fractions_of_a_range_are_equal_to_the_last_bit(count, times, low, high, logarithmic):
-    few, many = (spaced(low, high, number, logarithmic) for number in (count, (count - 1) * times + 1))
+    few, many = (spaced(Parameter(None, low, high, logarithmic), number) for number in (count, (count - 1) * times + 1))
     assert many[::times] == few and (few[0], few[-1]) == (low, high)
     space = np.geomspace if logarithmic else np.linspace
     assert many == pytest.approx(space(low, high, len(many)).tolist(), rel=1e-12, abs=1e-12 * max(low, high))

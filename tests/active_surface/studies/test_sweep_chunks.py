@@ -10,8 +10,9 @@ from sweeps import PLATFORM, SHAKEN, same, written
 
 from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
+from active_surface.studies.read import read_sweep
 from active_surface.studies.record import new_records
-from active_surface.studies.sweep_file import read_dataset, read_sweep
+from active_surface.studies.sweep_file import read_dataset
 from active_surface.studies.sweep_table import sweep_table
 
 pytestmark = pytest.mark.usefixtures("without_pictures")
@@ -62,10 +63,10 @@ def test_a_damaged_table_is_one_clear_error_and_stays(tmp_path):
     place = whole.rindex(records["end_x"][0].tobytes())
     for torn in (b"mine", whole[:100], whole[: len(whole) // 2], whole[:place] + b"?" + whole[place + 1 :]):
         file.write_bytes(torn)
-        with pytest.raises(ValueError, match=r"study.sweep: must be .* it is damaged, or something else: remove it"):
-            with sweep_table(file) as table:
-                table.ask(KEYS)
-                next(table.records([6]))
+        wrong = r"study.sweep: must be .* it is damaged, or something else: remove it"
+        with pytest.raises(ValueError, match=wrong), sweep_table(file) as table:
+            table.ask(KEYS)
+            next(table.records([6]))
         assert len(file.read_bytes()) >= len(torn)
     with closing(sqlite3.connect(tmp_path / "other.sweep")) as other:
         other.execute("CREATE TABLE mine (what)")

@@ -175,12 +175,12 @@ def test_a_full_disk_is_named_before_the_results_are_written_and_finished_paths_
 
 def test_a_disk_that_is_full_while_paths_are_kept_is_named(tmp_path):
     file = tmp_path / "study.sweep"
-    with pytest.raises(OSError, match=f"^{file}: database or disk is full; finished paths are kept there"):
-        with sweep_table(file) as table:
-            table.ask(bytes([number]) * 16 for number in range(200))
-            table.add(np.arange(2), new_records(2))
-            table._database.execute("PRAGMA max_page_count = 1")
-            table.add(np.arange(2, 200), new_records(198))
+    full = f"^{file}: database or disk is full; finished paths are kept there"
+    with pytest.raises(OSError, match=full), sweep_table(file) as table:
+        table.ask(bytes([number]) * 16 for number in range(200))
+        table.add(np.arange(2), new_records(2))
+        table._database.execute("PRAGMA max_page_count = 1")
+        table.add(np.arange(2, 200), new_records(198))
     with sweep_table(file) as table:
         table.ask(bytes([number]) * 16 for number in range(200))
         assert table.missing().tolist() == list(range(2, 200))
