@@ -97,7 +97,7 @@ def must(expected: str, right: Callable[[Any], bool]) -> BeforeValidator:
 
 _NAME = must(
     "a letter, followed by letters, digits or any of _ . * -, and none of the results' own names",
-    lambda value: isinstance(value, str) and re.fullmatch(r"[A-Za-z][\w.*-]*", value) and value not in TAKEN,
+    lambda value: isinstance(value, str) and bool(re.fullmatch(r"[A-Za-z][\w.*-]*", value)) and value not in TAKEN,
 )
 _LIST = must('a list of values such as ["300 Hz", "400 Hz"]', lambda value: isinstance(value, list) and len(value) > 0)
 _ENDS = must(
@@ -202,10 +202,11 @@ def _axis(name: str, field: Field, table: AxisTable, sampling: str) -> tuple[Axi
         return None, wrong
     if key == "values":
         return Axis(name, field, tuple(values)), []
-    parameter = Parameter(field, *values, table.spacing == "logarithmic")
-    listed = () if table.count is None else spaced(parameter, table.count)
-    low, high = values if table.count is None else (0.0, 0.0)
-    return Axis(name, field, listed, low, high, parameter.logarithmic), []
+    low, high = values
+    parameter = Parameter(field, low, high, table.spacing == "logarithmic")
+    if table.count is None:
+        return Axis(name, field, (), low, high, parameter.logarithmic), []
+    return Axis(name, field, spaced(parameter, table.count), logarithmic=parameter.logarithmic), []
 
 
 def _listed_misfits(field: Field, values: list[Value], table: AxisTable, sampling: str) -> Iterator[tuple[str, str]]:

@@ -265,10 +265,10 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
         for kind, file in files.items():
             file.parent.mkdir()
             file.write_text(dataset.attrs[kind], encoding="utf-8")
-        with whole(path), (folder / "points.csv").open("w", encoding="utf-8", newline="") as file:
+        with whole(path), (folder / "points.csv").open("w", encoding="utf-8", newline="") as text:
             if dataset.attrs["sampling"] == "list":  # whose values may be in a file that is elsewhere
                 names = dataset.attrs["axes"].split()
-                rows = csv.writer(file)
+                rows = csv.writer(text)
                 rows.writerow(dataset[name].attrs["field"] for name in names)
                 rows.writerows(zip(*(dataset[name].values.tolist() for name in names), strict=True))
         try:

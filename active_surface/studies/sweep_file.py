@@ -265,7 +265,8 @@ def finished_paths(study: Study, path: Path) -> Iterator[tuple[list[bytes], Reco
             texts = (value.decode() if isinstance(value, bytes) else value for value in values)
             axes.append(Axis(name, field, tuple(texts)))
         repeats = file.dimensions["repeat"].size if "repeat" in file.dimensions else 1
-        count, sampling = len(axes[0].values), str(about["sampling"])
+        count = len(axes[0].values)
+        sampling: Any = about["sampling"]
     points = Points(tuple(axes), sampling, count, repeats, study.points.jitter, study.points.seed, listed=True)
     first = 0
     for records in _records(path):
