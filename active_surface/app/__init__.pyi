@@ -1,4 +1,4 @@
-from .lanes import Lanes as Lanes
+from .answers import Lanes as Lanes
 from .opened import Opened as Opened, open_case as open_case
 from .server import Server as Server
 from .session import Session as Session
