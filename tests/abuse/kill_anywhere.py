@@ -118,7 +118,7 @@ def finished() -> dict[str, object]:
     """What is finished among the results in the current folder, by its name; raises where it is not whole."""
     there: dict[str, object] = {}
     for path in sorted(Path("out").rglob("*")):
-        unfinished = ".partial" in path.name or ".sweep" in path.parent.name or path.suffix == ".lock"
+        unfinished = ".partial" in path.name or path.suffix.startswith(".sweep")
         if path.is_dir() or unfinished or path.name == "mine.toml":
             continue
         name = path.relative_to("out").as_posix()
