@@ -137,7 +137,7 @@ def aim_over(
 
     def comment(result: Aimed) -> str:
         x, y = map(length_text, task.target)
-        return f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."
+        return f"The drives bring the part to within {length_text(result.distance)} of ({x}, {y})."
 
     approach = Approach(surface, task, threads, count)
     return _found(approach.run, close, comment, file, surface, threads)
@@ -225,8 +225,8 @@ class _Plan:
 def _plan_comment(result: Planned) -> str:
     """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
     legs = zip(result.route.through, result.distances, strict=False)
-    places = [f"({length_text(x)}, {length_text(y)}) but for {length_text(off)}" for (x, y), off in legs]
-    sentences = [f"The drives carry the part over {', '.join(places)}."] if places else []
+    places = [f"{length_text(off)} of ({length_text(x)}, {length_text(y)})" for (x, y), off in legs]
+    sentences = [f"The drives carry the part to within {', '.join(places)}."] if places else []
     return "\n".join([*sentences, result.failure] if result.failure else sentences)
 
 

@@ -111,7 +111,7 @@ def ended(route: Route, progress: Progress) -> tuple[bool, dict[str, Any], list[
     distances = [math.dist(end, target) for end, target in zip(progress.ends, route.through, strict=True)]
     complete = all(distance <= tolerance for distance in distances)
     rows = [
-        (f"way-point {k}", f"{point(target)}, but for {distance * MICRO:.4f} um, {_verdict(distance, tolerance)}")
+        (f"way-point {k}", f"{point(target)}: {distance * MICRO:.4f} um off, {_verdict(distance, tolerance)}")
         for k, (target, distance) in enumerate(zip(route.through, distances, strict=True))
     ]
     rows.append(("plan", "at its end: no way-point is left"))
@@ -139,7 +139,7 @@ def plan_lines(result: Planned) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     rows = []
     for k, (time, distance) in enumerate(zip(result.arrivals, result.distances, strict=True)):
-        where = f"{point(result.route.through[k])} by {time * MILLI:g} ms, but for {distance * MICRO:.4f} um"
+        where = f"{point(result.route.through[k])} by {time * MILLI:g} ms: {distance * MICRO:.4f} um off"
         where += f", {_verdict(distance, result.route.settings.tolerance)}"
         rows.append((f"leg {k}", where))
     if result.failure:

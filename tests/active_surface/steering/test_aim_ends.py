@@ -138,7 +138,7 @@ def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, 
     assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
     comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
     off = f"{planned.distances[0] * 1e6:g} um"
-    assert comment == [f"# The drives carry the part over (-20 um, 20 um) but for {off}.", f"# {planned.failure}"]
+    assert comment == [f"# The drives carry the part to within {off} of (-20 um, 20 um).", f"# {planned.failure}"]
 
 
 @pytest.mark.slow
