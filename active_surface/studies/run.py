@@ -142,6 +142,7 @@ def _results_file(
     """Compute what is missing in a folder; returns the file of all results there, and how many paths it had before."""
     file = folder / f"{study.name}{ENDING}"
     with sweep_table(folder / f"{study.name}.sweep") as table:
+        table.ask(keys_of(study))
         if key_of(file) == study.key:
             renew_labels(study, file)
             kept = len(study.points)
@@ -160,7 +161,6 @@ def _keep(study: Study, file: Path, table: SweepTable, overwrite: bool) -> int:
 
     Raises ValueError when the study's results would replace something else.
     """
-    table.ask(keys_of(study))
     if key_of(file) is None:
         if file.exists():
             free = "free of files of other kinds"

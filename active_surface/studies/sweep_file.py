@@ -35,6 +35,7 @@ LOGARITHMIC: Final = "logarithmic"
 LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers are labelled and described
 AT_ONCE: Final = 65536  # records that are read or written together, about
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
+INDEX: Final = 32  # bytes a path, about, by which the table of finished paths grows when it is read in order
 ROOM: Final = 1_000_000  # bytes, for what does not grow with the points
 Slab = tuple[slice, ...]
 
@@ -51,8 +52,7 @@ def write_sweep(study: Study, lots: Iterable[Records], path: Path, warnings: Seq
     """
     points = study.points
     coordinates = 0 if points.sampling == "grid" else 8 * len(points.axes) * len(points) // points.repeats
-    # Twice: beside the finished file there is the table.
-    needed = 2 * KIND.itemsize * len(points) + coordinates + ROOM
+    needed = (KIND.itemsize + INDEX) * len(points) + coordinates + ROOM
     check_room(path.parent, needed, "; finished paths are kept, and the same command goes on from them")
     sizes = points.dimensions
     with (

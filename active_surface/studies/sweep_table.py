@@ -24,7 +24,7 @@ KEPT: Final = "finished paths are kept there, and the same command goes on from 
 TABLES: Final = (
     f"PRAGMA application_id = {MADE_BY}",
     "CREATE TABLE IF NOT EXISTS finished (key BLOB, record BLOB, checksum INTEGER, earlier INTEGER)",
-    "DELETE FROM finished WHERE earlier",
+    "DELETE FROM finished WHERE earlier OR record IS NULL OR checksum IS NOT crc32(record)",
     "DROP INDEX IF EXISTS by_key",
     "DROP TABLE IF EXISTS asked",
     "CREATE TABLE asked (number INTEGER PRIMARY KEY, key BLOB)",
@@ -85,8 +85,8 @@ class SweepTable:
             yield np.frombuffer(b"".join(record for record, _ in some), KIND)
 
     def clear(self) -> None:
-        """Drop all finished paths."""
-        self._database.execute("DELETE FROM finished")
+        """Drop the paths of the study, and those of an earlier sweep; other ones stay."""
+        self._database.execute("DELETE FROM finished WHERE earlier OR key IN (SELECT key FROM asked)")
         self.commit()
 
     @property
@@ -114,14 +114,15 @@ def sweep_table(file: Path) -> Iterator[SweepTable]:
     Raises RuntimeError when another process uses the table, ValueError when the file is damaged or something else, and
     OSError, which names the file, when it cannot be read or written.
     """
-    if file.is_dir():  # as earlier versions made one
-        free = "free of folders in the place of its files"
-        raise ValueError(f"Input output must be {free}; got {file.parent}, whose {file.name} is one: remove it")
+    if file.is_dir():
+        made = f"must have no folder {file.name}, as earlier versions made"
+        raise ValueError(f"Input output {made}; got {file.parent}: remove the folder {file}")
     made = [folder for folder in file.parents if not folder.exists()]
     file.parent.mkdir(parents=True, exist_ok=True)
     unused = False
     try:
         with _sentences(file), closing(sqlite3.connect(file, timeout=0, isolation_level=None)) as database:
+            database.create_function("crc32", 1, zlib.crc32, deterministic=True)
             database.execute("PRAGMA locking_mode = EXCLUSIVE")
             database.execute("BEGIN EXCLUSIVE")
             (maker,) = database.execute("PRAGMA application_id").fetchone()
@@ -134,13 +135,15 @@ def sweep_table(file: Path) -> Iterator[SweepTable]:
             try:
                 yield table
             finally:
-                with suppress(sqlite3.Error):
+                with suppress(sqlite3.Error, OSError):
                     database.rollback()
                     unused = table.empty
+                    if unused:
+                        file.unlink()  # while the lock keeps others out; Windows removes no open file
     finally:
         with suppress(OSError):
             if unused:
-                file.unlink()
+                file.unlink(missing_ok=True)
             for folder in made:
                 folder.rmdir()
 
@@ -151,9 +154,12 @@ def _sentences(file: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.OperationalError as error:
-        if error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY:
+        code = error.sqlite_errorcode & 0xFF
+        removed = file.parent.is_dir() and not file.exists()  # by its last user, after it was opened here
+        if code == sqlite3.SQLITE_BUSY or removed:
             raise RuntimeError(f"another sweep of this name is running in {file.parent}") from None
-        raise OSError(f"{file}: {error}; {KEPT}") from None
+        kept = f"; {KEPT}" if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR) else ""
+        raise OSError(f"{file}: {error}{kept}") from None
     except sqlite3.DatabaseError:
-        what = "must be the finished paths of a sweep that was stopped; it is damaged, or something else"
-        raise ValueError(f"{file}: {what}: remove it to compute them again") from None
+        what = "is damaged, or no file of finished paths"
+        raise ValueError(f"{file}: {what}; move it away to compute all paths again") from None

@@ -131,6 +131,13 @@ def test_a_sweep_over_a_plate_grows_by_an_axis(field, tmp_path):
     assert content == expected and sweep.kept == 2
 
 
+def test_keys_cover_the_drives_that_a_stretching_plate_is_solved_for(tmp_path):
+    stretching = PLATE.replace('"disc"', '"disc"\ntheory = "von-karman"')
+    stroke = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "{} um"]\n'
+    few, more = (set(keys_of(read_study(written(tmp_path, stroke.format(k), stretching)))) for k in (2, 3))
+    assert len(few) == len(more) == 2 and not few & more
+
+
 def test_paths_over_a_plate_solved_for_all_drives_together_are_not_kept(tmp_path):
     stretching = PLATE.replace('"disc"', '"disc"\ntheory = "von-karman"')
     stroke = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "2 um"]\n'

@@ -60,18 +60,111 @@ def test_a_damaged_table_is_one_clear_error_and_stays(tmp_path):
         table.ask(KEYS)
         table.add(np.arange(6), records)
     whole = file.read_bytes()
-    place = whole.rindex(records["end_x"][0].tobytes())
-    for torn in (b"mine", whole[:100], whole[: len(whole) // 2], whole[:place] + b"?" + whole[place + 1 :]):
+    for torn in (b"mine", whole[:100], whole[: len(whole) // 2]):
         file.write_bytes(torn)
-        wrong = r"study.sweep: must be .* it is damaged, or something else: remove it"
+        wrong = r"study.sweep: is damaged, or no file of finished paths; move it away"
         with pytest.raises(ValueError, match=wrong), sweep_table(file) as table:
             table.ask(KEYS)
             next(table.records([6]))
         assert len(file.read_bytes()) >= len(torn)
     with closing(sqlite3.connect(tmp_path / "other.sweep")) as other:
         other.execute("CREATE TABLE mine (what)")
-    with pytest.raises(ValueError, match="something else"), sweep_table(tmp_path / "other.sweep"):
+    with pytest.raises(ValueError, match="no file of finished paths"), sweep_table(tmp_path / "other.sweep"):
         pass
+
+
+def test_a_record_that_is_damaged_is_not_finished(tmp_path):
+    file, records = tmp_path / "study.sweep", new_records(6)
+    records["end_x"] = 0.123456789
+    with sweep_table(file) as table:
+        table.ask(KEYS)
+        table.add(np.arange(6), records)
+    whole = file.read_bytes()
+    place = whole.rindex(records["end_x"][0].tobytes())
+    file.write_bytes(whole[:place] + b"?" + whole[place + 1 :])
+    with sweep_table(file) as table:
+        table.ask(KEYS)
+        (lost,) = table.missing()
+        table.add(np.array([lost]), records[:1])
+        assert b"".join(lot.tobytes() for lot in table.records([6])) == records.tobytes()
+
+
+def test_a_table_that_lacks_a_record_is_damaged(tmp_path):
+    with pytest.raises(ValueError, match="is damaged"), sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS[:2])
+        table.add(np.array([0]), new_records(1))
+        next(table.records([2]))
+
+
+def test_paths_of_an_earlier_sweep_are_counted_once_after_a_stop(tmp_path):
+    for _ in range(2):
+        with sweep_table(tmp_path / "study.sweep") as table:
+            table.ask(KEYS[:1])
+            assert table.keep([(KEYS[:2], new_records(2))]) == (1, 1)
+            table.commit()
+
+
+def test_what_is_refused_leaves_no_table(tmp_path):
+    with pytest.raises(ValueError, match="refused"), sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS[:1])
+        table.keep([(KEYS[:2], new_records(2))])
+        raise ValueError("refused")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_stop_after_the_results_were_read_leaves_a_table_that_goes_on(tmp_path):
+    for _ in range(2):
+        with sweep_table(tmp_path / "study.sweep") as table:
+            table.ask(KEYS[:1])
+            table.add(table.missing(), new_records(len(table.missing())))
+            assert len(next(table.records([1]))) == 1
+            table.commit()  # as `clear` does before the file goes
+
+
+def test_finished_paths_that_a_study_does_not_ask_for_stay(tmp_path):
+    with sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS[:3])
+        table.add(np.arange(3), new_records(3))
+    with sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS[:2])
+        table.clear()
+    with sweep_table(tmp_path / "study.sweep") as table:
+        table.ask(KEYS[:3])
+        assert table.missing().tolist() == [0, 1]
+
+
+def test_a_table_whose_file_was_removed_meanwhile_is_in_use(tmp_path, monkeypatch):
+    def connected(file, connect=sqlite3.connect, **options):
+        database = connect(file, **options)
+        file.unlink()  # by its last user
+        return database
+
+    (tmp_path / "study.sweep").touch()
+    monkeypatch.setattr("active_surface.studies.sweep_table.sqlite3.connect", connected)
+    with pytest.raises(RuntimeError, match="another sweep"), sweep_table(tmp_path / "study.sweep"):
+        pass
+
+
+def test_a_study_that_grew_after_a_stop_goes_on_from_its_finished_paths(tmp_path, monkeypatch):
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 1)
+    mass = '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg"]\n'
+    records, computed = Engine.records, []
+
+    def stopped(self, numbers):
+        if computed == [0]:
+            raise KeyboardInterrupt
+        computed.extend(numbers)
+        return records(self, numbers)
+
+    monkeypatch.setattr(Engine, "records", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(read_study(written(tmp_path, mass, PLATFORM)), tmp_path / "out")
+    monkeypatch.setattr(Engine, "records", lambda self, numbers: computed.extend(numbers) or records(self, numbers))
+    grown = read_study(written(tmp_path, mass.replace('["', '["9e-9 kg", "'), PLATFORM))
+    run_study(grown, tmp_path / "out").dataset.close()
+    assert computed == [0, 0, 2]  # of the second study the path of 1e-9 kg is there
+    run_study(grown, tmp_path / "fresh").dataset.close()
+    assert (tmp_path / "out" / "study.nc").read_bytes() == (tmp_path / "fresh" / "study.nc").read_bytes()
 
 
 def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):

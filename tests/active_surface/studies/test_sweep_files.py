@@ -200,12 +200,12 @@ def test_what_stands_in_the_place_of_the_table_stays(tmp_path):
     table = tmp_path / "out" / "study.sweep"
     table.write_text("mine")
     done = swept(tmp_path)
-    assert done.exit_code == 2 and "it is damaged, or something else: remove it" in done.output
+    assert done.exit_code == 2 and "is damaged, or no file of finished paths; move it away" in done.output
     assert table.read_text() == "mine"
     table.unlink()
     table.mkdir()
     done = swept(tmp_path)
-    assert done.exit_code == 2 and "whose study.sweep is one: remove it" in done.output and table.is_dir()
+    assert done.exit_code == 2 and "out/study.sweep" in done.output and "remove the folder" in done.output and table.is_dir()
 
 
 @pytest.mark.parametrize("sampling", ["", 'sampling = "list"\n', 'sampling = "random"\npoints = 3\n'])
