@@ -12,8 +12,8 @@ from typing import Any, Final
 HERE: Final = Path(__file__).resolve().parent
 NAMED: Final = (("study", "case"), ("study", "points"), ("aim", "case"), ("plate", "mesh"), ("plate", "motion"))
 """Tables and keys that name other files."""
-COMMANDS: Final = {"study": "sweep", "aim": "aim", "plate": "run"}
-"""The command for a file that has a table."""
+COMMANDS: Final = {"study": "sweep", "aim": "aim", "case": "run"}
+"""The command for a kind of file."""
 
 
 def examples_folder() -> Path:
@@ -66,12 +66,17 @@ def write_example(name: str, folder: Path) -> dict[Path, bool]:
 
 
 def command_of(name: str) -> str:
-    """The command that an example is for, with its words: the one in its comment, else by its tables."""
+    """The command that an example is for, with its words: the one in its comment, else by its kind."""
     text = (examples_folder() / f"{name}.toml").read_text(encoding="utf-8")
     if found := re.search(r"^# +active-surface (\w+) \S+(.*)$", text, re.MULTILINE):
         return f"{found[1]} {name}.toml{found[2]}"
-    tables = tomllib.loads(text)
-    return f"{next(COMMANDS[one] for one in COMMANDS if one in tables)} {name}.toml"
+    return f"{COMMANDS[kind_of(name)]} {name}.toml"
+
+
+def kind_of(name: str) -> str:
+    """What an example is: a "study", an "aim" or a "case"."""
+    tables = tomllib.loads((examples_folder() / f"{name}.toml").read_text(encoding="utf-8"))
+    return next((kind for kind in ("study", "aim") if kind in tables), "case")
 
 
 def _has(path: Path, content: bytes) -> bool:

@@ -86,6 +86,6 @@ def open_example(name: str) -> Opened:
 
 def example_cases() -> dict[str, str]:
     """The examples that are cases, and what each is about."""
-    from active_surface.examples import command_of, example_names
+    from active_surface.examples import example_names, kind_of
 
-    return {name: about for name, about in example_names().items() if command_of(name).startswith("run ")}
+    return {name: about for name, about in example_names().items() if kind_of(name) == "case"}

@@ -209,7 +209,7 @@ def _axis(name: str, field: Field, table: AxisTable, sampling: str) -> tuple[Axi
     return Axis(name, field, spaced(parameter, table.count), logarithmic=parameter.logarithmic), []
 
 
-def _listed_misfits(field: Field, values: list[Value], table: AxisTable, sampling: str) -> Iterator[tuple[str, str]]:
+def _listed_misfits(field: Field, values: list[Value], _: AxisTable, sampling: str) -> Iterator[tuple[str, str]]:
     doubled = next((value for value, count in Counter(values).items() if count > 1), None)
     if doubled is not None and sampling == "grid":
         yield "values", f"must differ from each other; got {counted(quoted(doubled), field.unit)} twice"

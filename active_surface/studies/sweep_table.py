@@ -115,8 +115,8 @@ def sweep_table(file: Path) -> Iterator[SweepTable]:
     OSError, which names the file, when it cannot be read or written.
     """
     if file.is_dir():
-        made = f"must have no folder {file.name}, as earlier versions made"
-        raise ValueError(f"Input output {made}; got {file.parent}: remove the folder {file}")
+        must = f"must have no folder {file.name}, as earlier versions made"
+        raise ValueError(f"Input output {must}; got {file.parent}: remove the folder {file}")
     made = [folder for folder in file.parents if not folder.exists()]
     file.parent.mkdir(parents=True, exist_ok=True)
     unused = False

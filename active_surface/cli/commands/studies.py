@@ -20,7 +20,7 @@ from active_surface.cli.options import (
 from active_surface.cli.refusal import check_kind, read
 
 STAGES = 3  # of the feasibility of a plate that only bends, without areas
-PICKING = 5  # more of a pick and its run
+PICKING = 4  # more of a pick and its run
 RESPONDING = 2  # of a response
 
 
@@ -94,7 +94,8 @@ def feasibility(
     target = output / f"{parsed.name}_picked.toml"
     if pick is not None:
         check_free(target, overwrite)
-    count = STAGES + areas + answers_drives(parsed) + (PICKING + answers_drives(parsed) if pick is not None else 0)
+    answers = answers_drives(parsed)
+    count = STAGES + areas + answers + (PICKING + (point == ()) + answers if pick is not None else 0)
     with stages(count) as bar:
         result = find(parsed, *ends, ACROSS if across is None else across, bar, *strokes, threads, areas)
         files = result.write(output, point or None)
@@ -102,7 +103,9 @@ def feasibility(
         if point is not None:
             frequency, stroke = point or (None, None)
             picked = pick_case(result, frequency, stroke, threads, bar)
-            files = (*result.write(output, (picked.frequency, picked.stroke)), picked.write(target))
+            if not point:  # the best one was not known
+                files = result.write(output, (picked.frequency, picked.stroke))
+            files = (*files, picked.write(target))
     figures = result.figures() | {"picked": None if picked is None else picked.figures()}
     rows = lines(figures) + ([] if picked is None else [("picked", picked.text)])
     return Answer(figures, rows, warnings(figures), files)

@@ -213,18 +213,18 @@ class Nearest(NamedTuple):
     frequency: float  # factor of the case's
     stroke: float  # likewise
     comes_off: bool  # whether a larger stroke loses the part there
-    share: float  # of the pull over what friction holds
+    share: float  # of the pull over the friction limit
 
 
 def nearest(ground: Ground, chart: Chart) -> Nearest:
     """Where a part at rest comes nearest to slipping, below the strokes that lose it."""
-    best = Nearest(0.0, 0.0, False, 0.0)
+    found = []
     for column in chart.columns:
         comes_off = math.isfinite(column.lost)
         stroke = BELOW * column.lost if comes_off else chart.strokes[1]
         share = ground.rest(column.frequency, stroke).slip().value
-        best = max(best, Nearest(column.frequency, stroke, comes_off, share), key=lambda one: one.share)
-    return best
+        found.append(Nearest(column.frequency, stroke, comes_off, share))
+    return max(found, key=lambda one: one.share)
 
 
 def valid_strokes(ground: Ground, frequencies: FloatArray, strokes: tuple[float, float], window: float) -> FloatArray:

@@ -83,16 +83,14 @@ class Ground:
             self._rests[key] = part_at_rest(surface, build_part(case), self.friction, window, case.run.gravity)
         return self._rests[key].scaled(frequency / driven[0], stroke / driven[1])
 
-    def paths(
-        self, factors: Sequence[tuple[float, float]], threads: int | None = None, friction: Contact | None = None
-    ) -> list[Trajectory]:
-        """The part's paths at factors (frequency, stroke), or under another friction; each ends where it comes off."""
-        surface, law, part = self.surface, friction or self.friction, build_part(self.case)
+    def paths(self, factors: Sequence[tuple[float, float]], threads: int | None = None) -> list[Trajectory]:
+        """The part's paths at factors (frequency, stroke); each ends where it comes off."""
+        surface, part = self.surface, build_part(self.case)
         if isinstance(surface, AnsweringSurface):
             surface = surface.until(self.duration)
         run = self.case.run.model_copy(update={"duration": self.duration, "after_detachment": "stop"})
         drives = [build_drives(scaled_case(self.case, *pair)) for pair in factors]
-        return follow([PathTask(surface, part, law, run, own) for own in drives], threads)
+        return follow([PathTask(surface, part, self.friction, run, own) for own in drives], threads)
 
 
 def make_ground(

@@ -64,7 +64,7 @@ def _nearest_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
     at = f"{_hertz(frequency)} and {_stroke(stroke, unit)}"
     return [
         ("nowhere", "no frequency and stroke looked at moves the part without losing it"),
-        ("nearest", f"the pull is {near['share']:.3g} of what friction holds at {at}, {end}"),
+        ("nearest", f"the pull reaches {near['share']:.3g} of the friction limit at {at}, {end}"),
         ("advice", "`active-surface advise CASE` tries less friction and other starts, too"),
     ]
 

@@ -148,7 +148,8 @@ def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, monkeypatch, 
     """It sets the frequencies, and how long areas are looked at; the map plays no part in that."""
     room = "active_surface.studies.feasibility.case."
     monkeypatch.setattr(room + "_chart", lambda *_: Chart((), (0.1, 10.0), ()))
-    monkeypatch.setattr(room + "valid_strokes", lambda *_: None)
+    for name in ("valid_strokes", "nearest"):
+        monkeypatch.setattr(room + name, lambda *_: None)
     text = PLATE.replace(FIRST, "FIRST").replace(SECOND, drives[1]).replace("FIRST", drives[0])
     (tmp_path / "base.toml").write_text(text)
     found = feasibility(read_case(tmp_path / "base.toml"), across=10, areas=True)
@@ -327,7 +328,8 @@ def test_where_nothing_moves_a_run_slips_with_the_share_of_friction_stated_and_n
     found = feasibility(case, 200.0, 400.0, smallest=1e-6, largest=1e-4)
     near = found.nearest
     assert found.own == "rest" and found.areas is None and near is not None and near.share < 1
-    assert f"the pull is {near.share:.3g} of what friction holds at 400 Hz" in dict(lines(found.figures()))["nearest"]
+    row = dict(lines(found.figures()))["nearest"]
+    assert f"the pull reaches {near.share:.3g} of the friction limit at 400 Hz" in row
     there = found.at(near.frequency * found.frequency, near.stroke * found.stroke)
     for share, moves in ((0.999, True), (1.001, False)):
         weaker = there.vary({"friction": {"model": "constant", "limit": f"{2 * share * near.share} uN"}})

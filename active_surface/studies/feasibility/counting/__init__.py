@@ -3,6 +3,8 @@
 Fields are linear between moments, and between a square and its neighbours. A square in one state, with its neighbours,
 at both moments counts as a whole. Others are looked at in SHARES of the time, each at two of 16 points, so that over
 all shares each is met once. So slips shorter than the time between moments and rings narrower than a square are met.
+
+The folder is of its own because an edit elsewhere then does not compile these kernels anew.
 """
 
 from __future__ import annotations
