@@ -3,14 +3,16 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sweeps import DISC
+from sweeps import DISC, read_text
+from sweeps import PLATE as OF_TWO
 
 from coupling import report, run_case
 from coupling.advice import Setting, Trial, Trials, advice_text, advise, advised_case, no_advice
-from coupling.borders import begins
+from coupling.borders import begins, why_none
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -28,7 +30,7 @@ from coupling.case import (
     scaled_friction,
     with_index,
 )
-from coupling.margins import event_actuators, margin_curves, margins_of
+from coupling.margins import _actuators, _Path, event_actuators, margin_curves, margins_of
 from coupling.report.wording import quantity
 from coupling.run import build_friction, follow_part
 from coupling.summary import summary_of
@@ -374,6 +376,28 @@ def test_a_place_that_rounds_off_the_plate_is_not_tried():
     rim = [ActuatorCase(position=(2.998e-4, 0.0), stroke=1e-6, frequency=1000)]
     result = run_case(case_of(place=(1e-5, 0.0), actuators=rim, friction=ConstantCase(limit=1.0)))
     assert advise(result) is None and advice_text(result, None) == "No trial run kept it and carried it along."
+
+
+def test_actuators_of_events_are_those_of_each_at_its_own_time(tmp_path, monkeypatch):
+    result = run_case(read_text(tmp_path, OF_TWO).vary({"run.duration": "20 ms"}))
+    given = result.case, result.scene, result.trajectory, build_friction(result.case)
+    path = _Path(given[0], given[1].surface, *given[2:])
+    alone = [
+        int(_actuators(result.scene, path, np.array([event.position]), np.array([event.time]), event.kind)[0])
+        if event.kind in (EventKind.SLIPS, EventKind.DETACHES)
+        else -1
+        for event in result.trajectory.events
+    ]
+    assert {0, 1} <= set(alone)
+    for most in (500_000, 1):
+        monkeypatch.setattr("coupling.margins.MAX_SHARES", most)
+        assert event_actuators(*given).tolist() == alone
+
+
+def test_a_run_that_hit_its_limit_of_work_gets_no_trials_and_says_so():
+    limit = Outcome.WORK_LIMIT
+    scene = SimpleNamespace(lifts=[Drive(1e-6, 100.0)], base=())
+    assert why_none(case_of(), scene, SimpleNamespace(outcome=limit, sentence=limit.sentence)) == limit.sentence
 
 
 @pytest.mark.slow

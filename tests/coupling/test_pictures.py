@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -27,15 +28,15 @@ from coupling.pictures.plate import (
     draw_plate,
     path_window,
 )
-from coupling.pictures.portrait import chosen_drives, decisive_moment, portrait_of
-from coupling.pictures.run import compose
+from coupling.pictures.portrait import chosen_drives, cycles_of, decisive_moment, portrait_of
+from coupling.pictures.run import _spans, compose
 from coupling.pictures.time import Curves, draw_over_time, limits, margins_over_time, strokes_of
 from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
 from meshes import disc
-from particle import Samples
+from particle import Drive, Samples
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
 DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
@@ -221,6 +222,26 @@ def test_a_run_that_slips_has_strokes_and_margins_over_time_and_a_line_where_it_
             for line in axes.lines
             if len(line.get_xdata()) == 2
         )
+
+
+def test_the_close_up_has_six_cycles_of_the_fastest_drive_also_where_it_stops_early():
+    drive = Drive(1e-6, 1000.0, cycles=40)
+    samples = SimpleNamespace(time=np.linspace(0, 0.2, 8001))
+    given = {"drives": {"actuator 0": drive}, "base": (), "cycles": cycles_of([drive])}
+    whole, part = _spans(SimpleNamespace(samples=samples, decisive=0.01, **given))
+    assert whole == (0.0, 0.2) and part == pytest.approx((0.007, 0.013))
+    assert _spans(SimpleNamespace(samples=samples, decisive=0.2, **given))[1] == pytest.approx((0.194, 0.2))
+
+
+def test_a_curve_that_is_mostly_steady_is_drawn_as_its_line_and_not_as_a_band():
+    axes = Figure(figsize=(10.0, 2.0)).add_axes((0.0, 0.0, 1.0, 1.0))
+    rows = Samples(*(np.zeros(2) for _ in Samples._fields))._replace(time=np.array([0.0, 1.0]))
+    times = np.linspace(0, 1, 40_001)
+    for share, bands in ((0.01, 0), (0.2, 1)):  # of the step that it makes halfway
+        axes.clear()
+        curves = Curves("speed", "m/s", {"": (times > 0.5) + share / 2 * np.sin(2 * np.pi * 950 * times)}, times)
+        assert len(draw_over_time(axes, rows, curves, Unit("s", 1.0), cycles=[1 / 950])) == bands
+        assert bool(axes.lines[0].get_xdata().size) == (not bands)
 
 
 @pytest.mark.slow

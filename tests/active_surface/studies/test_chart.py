@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from active_surface.studies.feasibility.chart import TOLERANCE, Column, make_chart
+from active_surface.studies.feasibility.chart_picture import AROUND, _ends
 from active_surface.studies.feasibility.pick import _candidates, clearances
 
 STROKES = (1e-3, 16.0)
@@ -64,3 +65,10 @@ def test_points_are_as_far_from_borders_as_geometry_says():
     assert clearances(chart, np.array([[1.0, 3.0]]))[0] == pytest.approx(math.log(4 / 3), rel=1e-3)
     assert points[:, 1].min() > 1 and points[:, 1].max() < 4
     assert len(_candidates(chart, np.full(len(chart.columns), 0.9))[0]) == 0
+
+
+def test_the_drawn_chart_ends_at_the_least_stroke_that_was_looked_at_or_at_the_case():
+    columns = np.array([[2.0, 8.0], [2.0, np.inf]])
+    assert _ends(columns, 4.0, np.array([1.5, 32.0])) == pytest.approx((1.5, 8 * AROUND))
+    assert _ends(columns, 1.0, np.array([1.5, 32.0])) == pytest.approx((1.0, 8 * AROUND))
+    assert _ends(columns, 4.0, np.array([0.1, 32.0]))[0] == pytest.approx(2 / AROUND)
