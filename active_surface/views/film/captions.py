@@ -1,4 +1,4 @@
-"""Captions: what a film says in words and scales, the same whoever draws the surface."""
+"""Captions: what a film says in words and scales, drawn once; clock, state and the hand of the time line in each frame."""
 
 from __future__ import annotations
 
@@ -8,87 +8,95 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
+from PIL import Image as Pictures, ImageDraw, ImageFont
 
 from active_surface.arrays import FloatArray, Image, IntArray
-from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import BOTTOM, Layout
 from active_surface.views.film.pace import Pace
-from active_surface.views.film.stage import Stage
+from active_surface.views.film.painter import colour_of
+from active_surface.views.film.scene import Moment
 from active_surface.views.rounding import round_below
+from active_surface.views.triangles import outer_edges
 from common import STEPS, draw_rim, quantity_text, unit_for
 from coupling.case import PlatformCase
 from coupling.pictures import MARKS
-from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
+from particle import PATH_COLOUR, SHADES, State, stretches
 
 DPI = 100
 MIN_LETTER = 9.0  # pixels
 WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
-LOST = "#7a4b94"
-COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
-
-
-def colour_of(stage: Stage, frame: Frame) -> str:
-    """The colour of what the part does."""
-    loss = stage.run.loss
-    return LOST if loss is not None and frame.time >= loss.time else COLOURS[frame.state]
+LINE = (0.045, 0.09, 0.8, 0.024)  # of the picture: the time line
 
 
 class Captions:
-    """Words and scales of a film. They are drawn once; clock, state and the time line's hand for each frame."""
+    """Words and scales of a film."""
 
-    def __init__(self, stage: Stage, layout: Layout, pace: Pace | None) -> None:
-        self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
+    def __init__(self, layout: Layout, pace: Pace | None) -> None:
+        self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI)
         self._canvas = FigureCanvasAgg(self._figure)
         self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), MIN_LETTER) * 72 / DPI  # points
-        self._stage, self._layout = stage, layout
-        self._time_unit = unit_for(stage.run.time, "s")
-        self._draw_bar()
+        self._scene, self._layout = layout.scene, layout
+        self._time_unit = unit_for(self._scene.run.time, "s")
+        if not self._scene.flat:
+            self._draw_bar()
         self._draw_lengths()
-        if layout.camera.level and not stage.flat:
+        if layout.level and not self._scene.flat:
             self._draw_heights()
         self._draw_notes(pace)
-        if stage.window:
+        self._draw_keys()
+        if self._scene.window:
             self._draw_map()
-        self._clock, self._state = self._draw_clock()
-        self._hand = self._draw_time_line()
+        self._draw_time_line()
         self._canvas.draw()
-        self._still = self._canvas.copy_from_bbox(self._figure.bbox)
+        self._still = np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
+        pixels = self._letter * DPI / 72
+        self._fonts = [
+            ImageFont.truetype(findfont(FontProperties(weight=weight)), share * pixels)
+            for weight, share in (("bold", 1.9), ("normal", 1.15))
+        ]
+        last = self._scene.run.time[-1] * self._time_unit.per_si
+        self._digits = int(np.clip(np.ceil(np.log10(250 / last)), 0, 6)) if last > 0 else 0
 
-    def put_on(self, image: Image, frame: Frame) -> Image:
-        """The picture (height, width, 3) with all captions of a frame."""
-        now = frame.time * self._time_unit.per_si
-        self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
-        self._state.set_text(self._words(frame))
-        self._state.set_color(colour_of(self._stage, frame))
-        self._hand.set_xdata([now])
-        self._canvas.restore_region(self._still)
-        for text in (self._clock, self._state):
-            self._figure.draw_artist(text)
-        self._figure.draw_artist(self._hand)
-        drawn = np.asarray(self._canvas.buffer_rgba())
-        touched = np.flatnonzero(drawn[..., 3].any(axis=1))
-        rows = slice(touched[0], touched[-1] + 1)
-        alpha = drawn[rows, :, 3:].astype(np.uint16)
-        result = image.copy()
-        result[rows] = ((image[rows] * (255 - alpha) + drawn[rows, :, :3] * alpha + 127) // 255).astype(np.uint8)
-        return result
+    def picture(self, drawn: Image, moment: Moment) -> Image:
+        """The picture (height, width, 3) of a moment whose surface is drawn in the layout's box."""
+        layout, image = self._layout, self._still.copy()
+        (left, lower), (right, upper) = layout.box
+        box = image[layout.height - upper : layout.height - lower, left:right]
+        np.minimum(box, drawn, out=box)
+        now, last = (t * self._time_unit.per_si for t in (moment.time, self._scene.run.time[-1]))
+        result = Pictures.fromarray(image)
+        pen = ImageDraw.Draw(result)
+        x, y = 0.03 * layout.width, 0.028 * layout.height
+        for text, font, colour in (
+            (f"{now:.{self._digits}f} {self._time_unit.name}", self._fonts[0], "black"),
+            (self._words(moment), self._fonts[1], colour_of(moment)),
+        ):
+            pen.text((x, y), text, colour, font, stroke_width=1, stroke_fill="white")
+            y += 1.4 * font.size
+        share = (now - (begin := self._scene.run.time[0] * self._time_unit.per_si)) / (last - begin) if last > begin else 0.5
+        x, y, wide, tall = np.array(LINE) * np.array([layout.width, layout.height] * 2)
+        width = max(self._letter * DPI / 72 / 6, 1.2)
+        place = x + share * wide
+        ends = place - width / 2, layout.height - y - tall, place + width / 2, layout.height - y
+        pen.rectangle([round(end) for end in ends], fill="black")
+        return np.asarray(result)
 
-    def _words(self, frame: Frame) -> str:
+    def _words(self, moment: Moment) -> str:
         """What the part does, and while it is stuck how hard it is pulled."""
-        run = self._stage.run
-        if run.loss is not None and frame.time >= run.loss.time:
-            return f"part {MARKS[run.loss.kind].afterwards}"
-        if frame.state is State.FLIGHT:
-            return f"{WORDS[frame.state]}, {quantity_text(frame.flight, 'm')} above"
-        pull = float(np.interp(frame.time, run.margins.time, run.margins.slip))
-        holds = frame.state is State.STICK and np.isfinite(pull)
-        return f"{WORDS[frame.state]}, pull {pull:.2f} of what friction holds" if holds else WORDS[frame.state]
+        run = self._scene.run
+        if moment.lost:
+            return f"part {MARKS[run.loss.kind].afterwards}" if run.loss else ""
+        if moment.state is State.FLIGHT:
+            return f"{WORDS[moment.state]}, {quantity_text(moment.flight, 'm')} above"
+        pull = float(np.interp(moment.time, run.margins.time, run.margins.slip))
+        pulled = moment.state is State.STICK and np.isfinite(pull)
+        return f"{WORDS[moment.state]}, pull {pull:.2f} of the friction limit" if pulled else WORDS[moment.state]
 
     def _draw_bar(self) -> None:
         """The scale of colours, no longer than the heights that there are."""
@@ -200,15 +208,6 @@ class Captions:
         known = run.rows.time <= run.time[-1]
         state = run.rows.state[known]
         return np.append(run.rows.time[known], run.time[-1]) * self._time_unit.per_si, np.append(state, state[-1:])
-
-    def _draw_clock(self) -> tuple[Text, Text]:
-        last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
-        self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
-        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True, "path_effects": HALO}
-        clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)
-        below = 0.972 - 2.7 * self._letter * DPI / 72 / self._layout.height
-        state = self._figure.text(0.031, below, "", fontsize=1.15 * self._letter, **common)
-        return clock, state
 
     def _draw_time_line(self) -> Line2D:
         run, unit, letter = self._stage.run, self._time_unit, self._letter
