@@ -18,7 +18,7 @@ CAMERAS = {"iso": (-60.0, 38.0), "top": (-90.0, 90.0), "front": (-90.0, 0.0), "s
 MIN_SIZE, MAX_SIDE = (320, 240), 8192  # pixels: width and height, either
 LEFT, RIGHT, BOTTOM, TOP = 0.03, 0.86, 0.17, 0.88  # of the picture: the part of it that the surface fills
 BESIDE_AXIS = 0.09  # likewise at the left where there is an axis of heights
-MARGIN = 0.02  # around that, of the picture's lower side: for lines, and for the ball
+MARGIN = 0.035  # around that, of the picture's lower side: for lines, and for the ball
 MOMENTS = 1000  # at which the reach of a platform is sought
 HIGHEST = 0.5  # of the frame's longer side: a part that flies higher may leave the picture
 
@@ -48,15 +48,14 @@ class Layout:
 
     @property
     def box(self) -> FloatArray:
-        """The lower left and upper right corners (2, 2) [pixels] of the part of the picture that the surface is drawn in."""
+        """The corners (2, 2) [pixels], lower left and upper right, of what the surface is drawn in."""
         margin = MARGIN * min(self.width, self.height)
         ends = np.array([[BESIDE_AXIS if self.level else LEFT, BOTTOM], [RIGHT, TOP]]) * [self.width, self.height]
-        return np.rint(ends + margin * np.array([[-1], [1]])).astype(int)
+        return np.rint(ends + margin * np.array([[-1], [1]])).clip(0).astype(int)
 
     def places(self, xy: FloatArray, z: FloatArray) -> FloatArray:
         """Places (k, 3) in the scene of points (k, 2) [m] at heights (k,) [m]."""
-        middle, size = self.scene.frame.mean(axis=0), self.scene.size
-        return np.column_stack([(xy - middle) / size, np.asarray(z) * (self.exaggeration / size)])
+        return np.column_stack([self.scene.scaled(xy), np.asarray(z) * (self.exaggeration / self.scene.size)])
 
     def pixels(self, places: FloatArray) -> FloatArray:
         """Places (k, 3) of the scene as pixels (k, 2) from the lower left corner."""
@@ -73,7 +72,8 @@ def layout_of(scene: Scene, camera: tuple[float, float], size: tuple[int, int], 
     top = max(scene.range[1], HIGHEST * scene.size / exaggeration)
     shifts = scene.shifts(np.linspace(0.0, scene.run.time[-1], MOMENTS))
     corners = np.stack([shifts.min(axis=0), shifts.max(axis=0)])
-    surface = [layout.places(scene.surface.points[:, :2] + shift, z) for z in scene.reach for shift in corners]
+    points = scene.surface.points[:, :2] * scene.size + scene.frame.mean(axis=0)
+    surface = [layout.places(points + shift, z) for z in scene.reach for shift in corners]
     seen = np.concatenate([*surface, layout.places(part[:, :2], np.clip(part[:, 2], None, top))]) @ layout.axes[:2].T
     low, high = seen.min(axis=0), seen.max(axis=0)
     room = np.ptp(layout.box, axis=0) - 2 * MARGIN * min(size)
@@ -89,7 +89,9 @@ def camera_of(text: str | tuple[float, float]) -> tuple[float, float]:
     """
     try:
         name = text.strip().lower() if isinstance(text, str) else text
-        azimuth, elevation = CAMERAS[name] if name in CAMERAS else map(float, name.split(",") if isinstance(name, str) else name)
+        azimuth, elevation = (
+            CAMERAS[name] if name in CAMERAS else map(float, name.split(",") if isinstance(name, str) else name)
+        )
     except (TypeError, ValueError):
         azimuth = elevation = math.nan
     if not (math.isfinite(azimuth) and -90 <= elevation <= 90):

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from PIL import Image as Pictures
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from active_surface.arrays import FloatArray, Image
 from active_surface.views.film.layout import MAX_SIDE, Layout
-from active_surface.views.film.scene import Moment
+from active_surface.views.film.scene import Moment, shapes_of
 from particle import PATH_COLOUR, STICK_COLOUR, State
 
 NO_OPENGL = "Films need OpenGL, which is not here: install EGL, on Debian by `apt-get install libegl1 libgl1-mesa-dri`"
@@ -56,27 +57,32 @@ class Painter:
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = sides[1] / self._finer / layout.scale / 2
         plotter.camera.clipping_range = (depth, 3 * depth)
+        self._pixels = vtkUnsignedCharArray()
         self._movers: list[tuple[pv.PolyData, FloatArray]] = []  # meshes with their shapes
         self._actors: list[tuple[pv.Actor, FloatArray]] = []  # with where they are without a shift
         self._add_all()
 
     def _add_all(self) -> None:
         scene, layout = self._scene, self._layout
-        line = max(layout.pixel, 0.6)
-        dot = 11 * line
+        line = max(layout.pixel, 0.8)
+        dot = 11 * max(layout.pixel, 0.6)
         self._surface = pv.PolyData.from_regular_faces(scene.surface.points, scene.surface.regular_faces)
         self._surface["colours"] = np.zeros((self._surface.n_points, 3), np.uint8)
-        self._add(self._surface, scene.surface["shapes"], 0, scalars="colours", rgb=True, lighting=False)
+        self._add(self._surface, shapes_of(scene.surface), 0, scalars="colours", rgb=True, lighting=False)
         lines = [(scene.net, 1.0, GREY, 1.0), (scene.rim, 2.2, "black", 1.5)]
         for mesh, width, colour, lift in [*lines, *[(scene.cut, 1.0, GREY, 1.0)] * scene.window]:
-            self._add(mesh.copy(), mesh["shapes"], lift, color=colour, line_width=width * line, lighting=False)
+            if mesh.n_points:
+                self._add(mesh.copy(), shapes_of(mesh), lift, color=colour, line_width=width * line, lighting=False)
         dots: dict[str, Any] = {"style": "points", "render_points_as_spheres": True, "lighting": False}
         shapes = scene.shapes_at(scene.actuators)
-        for size, colour, lift in ((dot, "black", 5.0), (0.68 * dot, "white", 7.0)):
-            self._add(pv.PolyData(_flat(scene.actuators)), shapes, lift, color=colour, point_size=size, **dots)
+        for size, colour, lift in ((dot, "black", 5.0), (0.68 * dot, "white", 5.0 + dot / layout.scale / LIFT)):
+            self._add(
+                pv.PolyData(_flat(scene.scaled(scene.actuators))), shapes, lift, color=colour, point_size=size, **dots
+            )
         trail = scene.trail[0]
         self._trail_shapes, look = scene.shapes_at(trail), {"color": PATH_COLOUR, "line_width": 3 * line}
-        self._trail = self._add(pv.lines_from_points(_flat(trail)), None, 3.0, lighting=False, **look)
+        line_of = pv.lines_from_points(_flat(scene.scaled(trail))) if len(trail) else pv.PolyData()
+        self._trail = self._add(line_of, None, 3.0, lighting=False, **look)
         pole = pv.Line()
         self._pole = self._add(pole, None, 2.0, color="#333333", line_width=1.2 * line, lighting=False)
         self._ball_radius = 11 * max(layout.pixel, 0.5)
@@ -85,9 +91,8 @@ class Painter:
         self._ball_actor = self._actors[-1][0]
 
     def _add(self, mesh: pv.PolyData, shapes: FloatArray | None, lift: float, **look: Any) -> pv.PolyData:
-        """Add a mesh with points in m, which its shapes move if it has any; sizes are in pixels of the picture."""
+        """Add a mesh, which its shapes move if it has any; sizes are in pixels of the picture."""
         if mesh.n_points:
-            mesh.points = self._layout.places(mesh.points[:, :2], mesh.points[:, 2])
             look |= {name: self._finer * look[name] for name in ("line_width", "point_size") if name in look}
             actor = self._plotter.add_mesh(mesh, reset_camera=False, **look)
             self._actors.append((actor, lift * LIFT * self._layout.axes[2]))
@@ -114,14 +119,17 @@ class Painter:
         self._ball_actor.prop.color = colour_of(moment)
         for actor, place in self._actors:
             actor.position = place + np.append(moment.shift, 0.0) / self._scene.size
-        self._plotter.render()
-        image = self._plotter.screenshot(None, return_img=True)
-        return np.asarray(Pictures.fromarray(image).reduce(self._finer))
+        window = self._plotter.render_window
+        window.Render()
+        (wide, tall), pixels = window.GetSize(), self._pixels
+        window.GetPixelData(0, 0, wide - 1, tall - 1, 0, pixels, 0)  # a screenshot of pyvista copies them thrice
+        image = Pictures.frombuffer("RGB", (wide, tall), pv.convert_array(pixels), "raw", "RGB", 0, -1)
+        return np.asarray(image.reduce(self._finer))
 
     def _colours(self, amplitudes: FloatArray) -> Image:
         """The colours (p, 3) of the surface, lit here: light for each pixel takes software half of the time."""
         scene, scale = self._scene, self._scene.scale
-        heights = scene.surface["shapes"] @ amplitudes
+        heights = shapes_of(scene.surface) @ amplitudes
         slopes = self._layout.exaggeration * (scene.slopes @ amplitudes)  # (2, p)
         across, upwards = self._light[:2] @ slopes, self._light[2]
         lit = np.clip((upwards - across) / np.sqrt(1 + (slopes**2).sum(axis=0)), 0, None)

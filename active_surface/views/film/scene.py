@@ -1,6 +1,6 @@
 """Scene of a film: the surface of a run, what lies on it, and how both move.
 
-The surface is the sum of a few modes, so that whatever lies on it is a mesh with a row of shapes for each of its points.
+The surface is the sum of a few modes, so whatever lies on it is a mesh with a row of shapes for each of its points.
 """
 
 from __future__ import annotations
@@ -56,7 +56,10 @@ class Moment(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What there is to draw. Meshes have places [m] in their points and `shapes` (k, r) [m] in their data."""
+    """What there is to draw.
+
+    Meshes are in the frame's longer sides, from its middle, and have the `shapes` (k, r) [m] of their points.
+    """
 
     run: SavedRun
     amplitudes: FloatArray  # (k, r) of the stored steps
@@ -80,13 +83,14 @@ class Scene:
     @cached_property
     def slopes(self) -> FloatArray:
         """The slopes (2, p, r) of the surface's shapes, along x and y."""
-        slopes = self.surface.compute_derivative(scalars="shapes")["gradient"]
-        return np.moveaxis(slopes.reshape(self.surface.n_points, -1, 3)[..., :2], 2, 0).copy()
+        slopes = self.surface["gradient"].reshape(self.surface.n_points, -1, 3)[..., :2] / self.size
+        return np.moveaxis(slopes, 2, 0).copy()
 
     @cached_property
     def rim(self) -> pv.PolyData:
         """The plate's rim."""
-        return _within(_edges(self.whole), self.frame)
+        slack = 1e-9 * np.array([[-1.0], [1.0]])  # where the frame is the plate's box
+        return _within(_edges(self.whole), self.scaled(self.frame) + slack)
 
     @cached_property
     def cut(self) -> pv.PolyData:
@@ -99,9 +103,9 @@ class Scene:
         lines = pv.PolyData()
         for k in (0, 1):
             first, last = self.frame[:, k] / self.mesh_width
-            levels = np.arange(math.floor(first) + 1, math.ceil(last)) * self.mesh_width
+            levels = np.arange(math.floor(first) + 1, math.ceil(last))[:, None] * self.mesh_width
             if len(levels):
-                lines += self.surface.contour(levels, scalars=self.surface.points[:, k])
+                lines += self.surface.contour(self.scaled(levels)[:, k], scalars=self.surface.points[:, k])
         return lines
 
     @cached_property
@@ -122,7 +126,7 @@ class Scene:
     @cached_property
     def reach(self) -> tuple[FloatArray, FloatArray]:
         """The lowest and the highest height (p,) [m] of each point of the surface in all steps."""
-        shapes, batches = self.surface["shapes"], np.array_split(self.amplitudes, -(-len(self.amplitudes) // BATCH))
+        shapes, batches = shapes_of(self.surface), np.array_split(self.amplitudes, -(-len(self.amplitudes) // BATCH))
         heights = [shapes @ some.T for some in batches]
         low, high = (np.stack([f(h, axis=1) for h in heights]) for f in (np.min, np.max))
         return low.min(axis=0), high.max(axis=0)
@@ -148,10 +152,14 @@ class Scene:
         """By how much heights are drawn larger by default."""
         return 1.0 if self.flat else exaggeration(self.range[1] - self.range[0], self.size)
 
+    def scaled(self, places: FloatArray) -> FloatArray:
+        """Places (..., 2) [m] as the meshes have them."""
+        return (places - self.frame.mean(axis=0)) / self.size
+
     def shapes_at(self, places: FloatArray) -> FloatArray:
         """The shapes (k, r) [m] at places (k, 2) [m] of the surface."""
-        spots = spots_of(self.whole.points[:, :2], self.whole.regular_faces, places)
-        return np.asarray((self.whole["shapes"][spots.corners] * spots.weights[..., None]).sum(axis=1))
+        spots = spots_of(self.whole.points[:, :2], self.whole.regular_faces, self.scaled(places))
+        return np.asarray((shapes_of(self.whole)[spots.corners] * spots.weights[..., None]).sum(axis=1))
 
     def shifts(self, times: FloatArray) -> FloatArray:
         """How far the platform has come (k, 2) [m] at times (k,) [s]; 0: there is a plate."""
@@ -160,7 +168,7 @@ class Scene:
         return np.stack([drive.evaluate(times)[0] for drive in base], axis=1) if base else np.zeros((len(times), 2))
 
     def moments(self, times: FloatArray) -> list[Moment]:
-        """What there is at times (F,) [s]: heights are linear between stored steps, the part is where its rows have it."""
+        """What there is at times (F,) [s]; between stored steps heights are linear, the part is where its rows are."""
         run, rows = self.run, self.run.rows
         amplitudes, place = (
             _interpolated(times, *columns) for columns in ((run.time, self.amplitudes), (self.path_time, self.path))
@@ -174,6 +182,11 @@ class Scene:
         ]
 
 
+def shapes_of(mesh: pv.PolyData) -> FloatArray:
+    """The shapes (k, r) [m] at the points of a mesh of a scene."""
+    return np.asarray(mesh["shapes"]).reshape(mesh.n_points, -1)  # VTK knows no columns where there is one
+
+
 def scene_of(run: SavedRun) -> Scene:
     """The scene of a run: all of its surface, or a window around a path that is short beside it."""
     path, then = _path(run)
@@ -182,8 +195,9 @@ def scene_of(run: SavedRun) -> Scene:
     inside = ((run.points >= low) & (run.points <= high)).all(axis=1)
     used, corners = np.unique(run.triangles[inside[run.triangles].any(axis=1)], return_inverse=True)
     shapes, amplitudes = _modes(run, used)
-    whole = _refined(Triangulation(*run.points[used].T, corners.reshape(-1, 3)), shapes)
-    surface = _within(whole, frame) if window else whole.copy()
+    scaled = (np.stack([*frame, *run.points[used]]) - frame.mean(axis=0)) / extent(frame)
+    whole = _refined(Triangulation(*scaled[2:].T, corners.reshape(-1, 3)), shapes)
+    surface = _within(whole, scaled[:2]).triangulate() if window else whole.copy()
     return Scene(run, amplitudes, frame, window, whole, surface, path, then)
 
 
@@ -237,7 +251,7 @@ def _refined(mesh: Triangulation, shapes: FloatArray) -> pv.PolyData:
         fine, values = both[0][0], [value for _, value in both]
     surface = pv.PolyData.from_regular_faces(np.column_stack([fine.x, fine.y, 0 * fine.x]), fine.triangles)
     surface["shapes"] = np.stack(values, axis=1)
-    return surface
+    return surface.compute_derivative(scalars="shapes")
 
 
 def _edges(surface: pv.PolyData) -> pv.PolyData:
@@ -245,10 +259,10 @@ def _edges(surface: pv.PolyData) -> pv.PolyData:
 
 
 def _within(mesh: pv.PolyData, frame: FloatArray) -> pv.PolyData:
-    """The part of a mesh that lies in a frame (2, 2) [m]."""
+    """The part of a mesh that lies in a frame (2, 2)."""
     for axis, low, high in zip("xy", *frame, strict=True):
         for normal, end in ((f"-{axis}", low), (axis, high)):
-            mesh = mesh.clip(normal, origin=(end, end, 0.0))
+            mesh = mesh.clip(normal, origin=(end, end, 0.0)) if mesh.n_points else mesh
     return mesh
 
 

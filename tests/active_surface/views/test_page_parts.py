@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
 from active_surface.cli.program import main
-from active_surface.views.pages.modes import SEEN, modes_of
+from active_surface.views.modes import SEEN, modes_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.page_file import notes_of, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import _around
