@@ -21,8 +21,7 @@ from active_surface.views.film.layout import BOTTOM, Layout
 from active_surface.views.film.pace import Pace
 from active_surface.views.film.painter import colour_of
 from active_surface.views.film.scene import Moment
-from active_surface.views.rounding import round_below
-from active_surface.views.triangles import outer_edges
+from active_surface.views.geometry import outer_edges, round_below
 from common import STEPS, draw_rim, quantity_text, unit_for
 from coupling.case import PlatformCase
 from coupling.pictures import MARKS

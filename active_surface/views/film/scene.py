@@ -15,9 +15,8 @@ import pyvista as pv
 from matplotlib.tri import CubicTriInterpolator, Triangulation, UniformTriRefiner
 
 from active_surface.arrays import FloatArray, IntArray
+from active_surface.views.geometry import exaggeration, round_above, spots_of
 from active_surface.views.modes import modes_of
-from active_surface.views.rounding import exaggeration, round_above
-from active_surface.views.triangles import spots_of
 from coupling import silent
 from coupling.case import PlatformCase
 from coupling.pictures import PITCHES, Scale, is_visible, path_window

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
+from active_surface.views.geometry import cut_in
 from active_surface.views.pages.packed import packed
 from common import Unit, unit_for
 from coupling import Margin, Summary, report, silent, summary_of
@@ -55,12 +56,6 @@ def _panels(run: SavedRun, along: Unit) -> list[dict[str, Any]]:
         panels.append(_panel("Load", "N", *_fewer(*_rows(run, "normal_force"))))
     panels.append(_panel("Friction", "N", *_fewer(*_rows(run, "friction_force"))))
     return panels
-
-
-def cut_in(parts: IntArray) -> tuple[IntArray, FloatArray]:
-    """Pieces of a line that are cut in so many parts each: of every part's beginning its piece, and how far along."""
-    piece = np.repeat(np.arange(len(parts)), parts)
-    return piece, (np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[piece]
 
 
 def counted(run: SavedRun) -> str:

@@ -20,7 +20,7 @@ from active_surface.views.film.layout import (
 )
 from active_surface.views.film.pace import MAX_FRAMES, MIN_FRAMES_PER_CYCLE, pace_of, warnings_of
 from active_surface.views.film.scene import scene_of, shapes_of
-from active_surface.views.triangles import spots_of
+from active_surface.views.geometry import spots_of
 from particle import State
 
 LONG = np.stack([np.linspace(-4e-4, 4e-4, 5), np.zeros(5)], axis=1)  # a path across the plate
