@@ -86,6 +86,7 @@ def main():
         time.sleep(3)
         while driver.execute_script("return element('busy').textContent"):  # quick paths are being prepared
             time.sleep(0.5)
+        driver.execute_script("element('file').hidden = true")  # its path differs from machine to machine
         frames, begun = [], time.monotonic()
         for number, _ in enumerate(script(driver)):
             if number == int(SECONDS * RATE):
@@ -104,7 +105,7 @@ def main():
     strip = Image.new("RGB", (frames[0].width, frames[0].height * len(some)))
     for k, frame in enumerate(some):
         strip.paste(frame, (0, k * frame.height))
-    palette = strip.quantize(255, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    palette = strip.quantize(255, method=Image.Quantize.MAXCOVERAGE, kmeans=5, dither=Image.Dither.NONE)
     plain = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     plain[0].save(FILM, save_all=True, append_images=plain[1:], duration=round(1000 / RATE), loop=0, optimize=True)
     print(f"wrote {FILM}, {FILM.stat().st_size / 1e6:.1f} MB")

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.views import packed
+from active_surface.views import packed, thinned
 from common import Unit, quantity_text, unit_for
 from coupling import report
 from coupling.case import Case, PlateCase
@@ -16,7 +16,7 @@ from meshes import rim_curves
 from particle import Trajectory
 
 PIECES: Final = 3  # of a path between two rows
-SEEN: Final = 1e-3  # of the extent of a path: nearer points are one
+SEEN: Final = 5e-4  # of the extent of a path: less is not seen
 MICROMETRES, LARGE = Unit("\N{MICRO SIGN}m", 1e6), 1e-2  # m
 MAX_DRAGGED: Final = 300  # actuators; more are dots
 
@@ -43,7 +43,8 @@ def map_of(case: Case) -> dict[str, Any]:
 
 def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
     """A path, how it ended and how far the part came."""
-    line = _spread(_curve(path))
+    line = _curve(path)
+    line = thinned(line, SEEN * extent(line))
     return {
         "line": packed(line * unit.per_si, "f4"),
         "outcome": path.outcome.value,
@@ -76,14 +77,3 @@ def _curve(path: Trajectory) -> FloatArray:
     begin = (1 + 2 * share) * (1 - share) ** 2 * p[:-1] + share * (1 - share) ** 2 * span * v[:-1]
     end = share**2 * (3 - 2 * share) * p[1:] - share**2 * (1 - share) * span * v[1:]
     return np.concatenate([(begin + end).transpose(1, 0, 2).reshape(-1, 2), p[-1:]])
-
-
-def _spread(line: FloatArray) -> FloatArray:
-    """A line (n, 2) without the points that nobody can tell from the one before."""
-    near = SEEN * max(extent(np.stack([line.min(axis=0), line.max(axis=0)])), 1e-12)
-    kept, last = [0], line[0]
-    for k in range(1, len(line) - 1):
-        if abs(line[k, 0] - last[0]) + abs(line[k, 1] - last[1]) >= near:
-            kept.append(k)
-            last = line[k]
-    return line[[*kept, len(line) - 1]]

@@ -4,6 +4,7 @@ from .pages.study_page import write_study_page as write_study_page
 from .prints.plots import plot as plot
 
 # Not public: for the packages that build on this one.
+from .geometry import thinned as thinned
 from .result_file import is_of as is_of, result_of as result_of
 from .pages.packed import packed as packed
 from .pages.page_file import PARTS as PARTS, part as part

@@ -39,7 +39,7 @@ COMMANDS: dict[str, list[str]] = {
     "aim": ["aim", "aim.toml", "-o", "out", "--quiet", "--threads", "1", "--overwrite"],
     "export": ["export", "made/quick", "--format", "pvd", "-o", "out", "--quiet"],
     "animate": [
-        *("animate", "made/quick", "-o", "out/film.gif", "--renderer", "matplotlib", "--size", "320x240"),
+        *("animate", "made/quick", "-o", "out/film.gif", "--size", "320x240"),
         *("--fps", "4", "--quiet"),
     ],
     "view": ["view", "made/quick", "-o", "out/page.html", "--quiet"],

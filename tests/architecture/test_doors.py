@@ -90,7 +90,7 @@ RULE = [
     ("coupling.case.case", "from particle import simulate, friction", True),
     ("coupling.case.case", "from particle import path", False),
     ("coupling.case.case", "from fem_plate import analytic", True),
-    ("active_surface.studies.run", "from active_surface.views.film.stage import Stage", False),
+    ("active_surface.studies.run", "from active_surface.views.film.scene import Scene", False),
 ]
 
 

@@ -29,12 +29,10 @@ def animate(
     ] = None,
     fps: Annotated[float | None, option("Frames a second [30, of a GIF 20].")] = None,
     size: Annotated[str | None, option("Pixels [1280x720, of a GIF 800x450].", "WxH")] = None,
-    renderer: Annotated[Literal["auto", "pyvista", "matplotlib"], option(None, show_default=True)] = "auto",
 ) -> Answer:
     """Make a film of RESULT: the plate's heights, the part and its trail.
 
-    RESULT is one of the two files of a run, finished or partial, or FOLDER/NAME. Where pyvista cannot draw,
-    matplotlib does, and the command says so.
+    RESULT is one of the two files of a run, finished or partial, or FOLDER/NAME.
     """
     from active_surface.views.film import animate as make
 
@@ -48,13 +46,12 @@ def animate(
             slow_motion=slow_motion,
             exaggeration=exaggeration,
             size=size,
-            renderer=renderer,
             tell=tell,
         )
     lasts = f"{made.frames} frames at {made.fps:g} a second, {made.frames / made.fps:.3g} s"
     lines = [
         ("film", f"{lasts}, {made.slow_motion:.6g} s for each second of the run"),
-        ("heights", f"drawn {made.exaggeration:.6g} times as large as lengths, by {made.renderer}"),
+        ("heights", f"drawn {made.exaggeration:.6g} times as large as lengths"),
     ]
     return Answer(made.as_dict(), lines, made.warnings, [made.file])
 

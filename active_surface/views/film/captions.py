@@ -1,4 +1,4 @@
-"""Captions: what a film says in words and scales, the same whoever draws the surface."""
+"""Captions: words and scales of a film, drawn once, and clock, state and time in each frame."""
 
 from __future__ import annotations
 
@@ -8,140 +8,142 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.text import Text
-from matplotlib.ticker import MaxNLocator, StrMethodFormatter
+from matplotlib.ticker import FixedLocator, MaxNLocator, StrMethodFormatter
+from PIL import Image as Pictures
+from PIL import ImageDraw, ImageFont
 
 from active_surface.arrays import FloatArray, Image, IntArray
-from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import BOTTOM, Layout
 from active_surface.views.film.pace import Pace
-from active_surface.views.film.stage import Stage
-from active_surface.views.rounding import round_below
+from active_surface.views.film.painter import colour_of
+from active_surface.views.film.scene import Moment
+from active_surface.views.geometry import outer_edges, round_below
 from common import STEPS, draw_rim, quantity_text, unit_for
 from coupling.case import PlatformCase
 from coupling.pictures import MARKS
-from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
+from particle import PATH_COLOUR, SHADES, State, stretches
 
 DPI = 100
 MIN_LETTER = 9.0  # pixels
 WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
-LOST = "#7a4b94"
-COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
-
-
-def colour_of(stage: Stage, frame: Frame) -> str:
-    """The colour of what the part does."""
-    loss = stage.run.loss
-    return LOST if loss is not None and frame.time >= loss.time else COLOURS[frame.state]
+LINE = (0.045, 0.09, 0.8, 0.024)  # of the picture: the time line
 
 
 class Captions:
-    """Words and scales of a film. They are drawn once; clock, state and the time line's hand for each frame."""
+    """Words and scales of a film."""
 
-    def __init__(self, stage: Stage, layout: Layout, pace: Pace | None) -> None:
-        self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
+    def __init__(self, layout: Layout, pace: Pace | None) -> None:
+        self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI)
         self._canvas = FigureCanvasAgg(self._figure)
         self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), MIN_LETTER) * 72 / DPI  # points
-        self._stage, self._layout = stage, layout
-        self._time_unit = unit_for(stage.run.time, "s")
-        self._draw_bar()
+        self._scene, self._layout = layout.scene, layout
+        self._time_unit = unit_for(self._scene.run.time, "s")
+        if not self._scene.flat:
+            self._draw_bar()
         self._draw_lengths()
-        if layout.camera.level and not stage.flat:
+        if layout.level and not self._scene.flat:
             self._draw_heights()
         self._draw_notes(pace)
-        if stage.window:
+        self._draw_keys()
+        if self._scene.window:
             self._draw_map()
-        self._clock, self._state = self._draw_clock()
-        self._hand = self._draw_time_line()
+        self._draw_time_line()
         self._canvas.draw()
-        self._still = self._canvas.copy_from_bbox(self._figure.bbox)
+        self._still = np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
+        pixels = self._letter * DPI / 72
+        self._fonts = [
+            ImageFont.truetype(findfont(FontProperties(weight=weight)), share * pixels)
+            for weight, share in (("bold", 1.9), ("normal", 1.15))
+        ]
+        last = self._scene.run.time[-1] * self._time_unit.per_si
+        self._digits = int(np.clip(np.ceil(np.log10(250 / last)), 0, 6)) if last > 0 else 0
 
-    def put_on(self, image: Image, frame: Frame) -> Image:
-        """The picture (height, width, 3) with all captions of a frame."""
-        now = frame.time * self._time_unit.per_si
-        self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
-        self._state.set_text(self._words(frame))
-        self._state.set_color(colour_of(self._stage, frame))
-        self._hand.set_xdata([now])
-        self._canvas.restore_region(self._still)
-        for text in (self._clock, self._state):
-            self._figure.draw_artist(text)
-        self._figure.draw_artist(self._hand)
-        drawn = np.asarray(self._canvas.buffer_rgba())
-        touched = np.flatnonzero(drawn[..., 3].any(axis=1))
-        rows = slice(touched[0], touched[-1] + 1)
-        alpha = drawn[rows, :, 3:].astype(np.uint16)
-        result = image.copy()
-        result[rows] = ((image[rows] * (255 - alpha) + drawn[rows, :, :3] * alpha + 127) // 255).astype(np.uint8)
-        return result
+    def picture(self, drawn: Image, moment: Moment) -> Image:
+        """The picture (height, width, 3) of a moment whose surface is drawn in the layout's box."""
+        layout, image = self._layout, self._still.copy()
+        (left, lower), (right, upper) = layout.box
+        box = image[layout.height - upper : layout.height - lower, left:right]
+        np.minimum(box, drawn, out=box)
+        begin, now, last = np.array([*self._scene.run.time[[0, -1]], moment.time])[[0, 2, 1]] * self._time_unit.per_si
+        result = Pictures.fromarray(image)
+        pen = ImageDraw.Draw(result)
+        x, y = 0.03 * layout.width, 0.028 * layout.height
+        for text, font, colour in (
+            (f"{now:.{self._digits}f} {self._time_unit.name}", self._fonts[0], "black"),
+            (self._words(moment), self._fonts[1], colour_of(moment)),
+        ):
+            pen.text((x, y), text, colour, font, stroke_width=1, stroke_fill="white")
+            y += 1.4 * font.size
+        share = (now - begin) / (last - begin) if last > begin else 0.5
+        x, y, wide, tall = np.array(LINE) * np.array([layout.width, layout.height] * 2)
+        width = max(self._letter * DPI / 72 / 6, 1.2)
+        place = x + share * wide
+        ends = place - width / 2, layout.height - y - tall, place + width / 2, layout.height - y
+        pen.rectangle([round(end) for end in ends], fill="black")
+        return np.asarray(result)
 
-    def _words(self, frame: Frame) -> str:
+    def _words(self, moment: Moment) -> str:
         """What the part does, and while it is stuck how hard it is pulled."""
-        run = self._stage.run
-        if run.loss is not None and frame.time >= run.loss.time:
-            return f"part {MARKS[run.loss.kind].afterwards}"
-        if frame.state is State.FLIGHT:
-            return f"{WORDS[frame.state]}, {quantity_text(frame.flight, 'm')} above"
-        pull = float(np.interp(frame.time, run.margins.time, run.margins.slip))
-        holds = frame.state is State.STICK and np.isfinite(pull)
-        return f"{WORDS[frame.state]}, pull {pull:.2f} of what friction holds" if holds else WORDS[frame.state]
+        run = self._scene.run
+        if moment.lost:
+            return f"part {MARKS[run.loss.kind].afterwards}" if run.loss else ""
+        if moment.state is State.FLIGHT:
+            return f"{WORDS[moment.state]}, {quantity_text(moment.flight, 'm')} above"
+        pull = float(np.interp(moment.time, run.margins.time, run.margins.slip))
+        pulled = moment.state is State.STICK and np.isfinite(pull)
+        return f"{WORDS[moment.state]}, pull {pull:.2f} of the friction limit" if pulled else WORDS[moment.state]
 
     def _draw_bar(self) -> None:
         """The scale of colours, no longer than the heights that there are."""
-        if self._stage.flat:
-            return
-        low, high = (float(part) for part in (self._stage.reach[0].min(), self._stage.reach[1].max()))
-        scale = self._stage.scale
-        unit = scale.unit
-        tall = 0.38 if self._stage.window else 0.48
+        scale = self._scene.scale
+        tall = 0.38 if self._scene.window else 0.48
         axes = self._figure.add_axes((0.89, BOTTOM + 0.12, 0.016, tall))
         bar = self._figure.colorbar(ScalarMappable(scale.norm, scale.colours), cax=axes)
-        axes.set_ylim(low * unit.per_si, high * unit.per_si)
+        axes.set_ylim(*(height * scale.unit.per_si for height in self._scene.range))
         bar.set_ticks(MaxNLocator(6, steps=STEPS))
-        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
+        axes.yaxis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
         axes.tick_params(labelsize=self._letter, pad=2, length=3)
-        axes.set_title(f"height [{unit.name}]", fontsize=self._letter, pad=self._letter)
+        axes.set_title(f"height [{scale.unit.name}]", fontsize=self._letter, pad=self._letter)
 
     def _draw_lengths(self) -> None:
         """How long a length in the plane is across the picture, and how tall a height."""
-        layout, figure = self._layout, self._figure
-        left, bottom = 0.045 * layout.width, (BOTTOM + 0.01) * layout.height
-        whole = 0.13 * min(layout.width, layout.height)
-        dot: dict[str, Any] = {"color": "black", "linewidth": max(layout.height / 500, 1.0), "solid_capstyle": "butt"}
-        rise = float(abs(layout.camera.up[2])) * layout.exaggeration
-        for up, per_metre in ((False, layout.scale / layout.size), (True, layout.scale / layout.size * rise)):
-            if per_metre * layout.size < 0.05 * layout.scale or (up and self._stage.flat):
+        layout = self._layout
+        left, bottom = 0.045, BOTTOM + 0.01
+        letters: dict[str, Any] = {"fontsize": 0.9 * self._letter}
+        per_metre = layout.scale / self._scene.size
+        tall = per_metre * float(abs(layout.axes[1, 2])) * layout.exaggeration
+        for pixels, up in ((per_metre, False), (tall, True)):
+            if pixels < 0.05 * per_metre or (up and self._scene.flat):
                 continue
-            length = round_below(whole / per_metre)
-            pixels = length * per_metre
-            unit = unit_for(length, "m")
-            ends = ([left, left], [bottom, bottom + pixels]) if up else ([left, left + pixels], [bottom, bottom])
-            shares = [np.array(part) / side for part, side in zip(ends, (layout.width, layout.height), strict=True)]
-            figure.add_artist(Line2D(*shares, **dot))
-            text = f"{length * unit.per_si:.6g} {unit.name}"
-            place = (shares[0][-1], shares[1][-1])
+            length = round_below(0.13 * min(layout.width, layout.height) / pixels)
+            end = (
+                (left, bottom + length * pixels / layout.height)
+                if up
+                else (left + length * pixels / layout.width, bottom)
+            )
+            line = Line2D((left, end[0]), (bottom, end[1]), color="black", solid_capstyle="butt")
+            line.set_linewidth(max(layout.height / 500, 1.0))
+            self._figure.add_artist(line)
+            text = quantity_text(length, "m")
             if up:
-                kept: dict[str, Any] = {"ha": "left", "va": "bottom"}
-                figure.text(0.03, place[1] + 0.006, text + self._times, fontsize=self._letter * 0.9, **kept)
+                self._figure.text(0.03, end[1] + 0.006, text + self._times, va="bottom", **letters)
             else:
-                figure.text(place[0] + 0.006, place[1], text, fontsize=self._letter * 0.9, va="center")
+                self._figure.text(end[0] + 0.006, bottom, text, va="center", **letters)
 
     def _draw_heights(self) -> None:
         """An axis of heights at the left of a surface that is seen from the side."""
-        layout, figure = self._layout, self._figure
-        low, high = (float(part) for part in (self._stage.reach[0].min(), self._stage.reach[1].max()))
-        ends = layout.pixels(layout.scene(layout.middle[None].repeat(2, axis=0), np.array([low, high])))[:, 1]
-        bottom, top = ends / layout.height
-        axes = figure.add_axes((0.07, bottom, 1e-3, top - bottom), facecolor="none")
-        unit = self._stage.scale.unit
-        axes.set_ylim(low * unit.per_si, high * unit.per_si)
+        layout, unit = self._layout, self._scene.scale.unit
+        heights = np.array(self._scene.range)
+        middle = self._scene.frame.mean(axis=0, keepdims=True)
+        bottom, top = layout.pixels(layout.places(middle.repeat(2, axis=0), heights))[:, 1] / layout.height
+        axes = self._figure.add_axes((0.07, bottom, 1e-3, top - bottom), facecolor="none")
+        axes.set_ylim(*(heights * unit.per_si))
         axes.set_xticks([])
-        for side in ("top", "right", "bottom"):
-            axes.spines[side].set_visible(False)
+        axes.spines[["top", "right", "bottom"]].set_visible(False)
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=STEPS))
         axes.tick_params(labelsize=0.9 * self._letter, length=4, pad=2)
         axes.set_title(f"height [{unit.name}]{self._times}", fontsize=0.9 * self._letter, loc="left", pad=self._letter)
@@ -152,102 +154,69 @@ class Captions:
         return "" if times == 1 else f" (×{times:.6g})"
 
     def _draw_notes(self, pace: Pace | None) -> None:
-        stage, letter = self._stage, self._letter
-        unit = unit_for(stage.mesh_width, "m")
-        times = self._layout.exaggeration
-        notes = [
-            "flat"
-            if stage.flat
-            else "heights true to scale"
-            if times == 1
-            else f"heights drawn {times:.6g} times larger",
-            f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
-        ]
+        scene, times = self._scene, self._layout.exaggeration
+        larger = "heights true to scale" if times == 1 else f"heights drawn {times:.6g} times larger"
+        notes = ["flat" if scene.flat else larger, f"squares of {quantity_text(scene.mesh_width, 'm')}"]
         if pace is not None and len(pace.times) > 1:
             notes.append(pace.words)
-        if isinstance(stage.run.case.plate, PlatformCase):
+        if isinstance(scene.run.case.plate, PlatformCase):
             notes.append("the trail is that on the platform")
-        grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
-        self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(notes), ha="center", va="bottom", **grey), 0.97)
-        self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", parse_math=False, **grey), 0.6)
+        for place, words, share, look in (
+            ((0.5, 0.012), "   ·   ".join(notes), 0.97, {"ha": "center", "va": "bottom"}),
+            ((0.975, 0.972), scene.run.name, 0.6, {"ha": "right", "va": "top", "parse_math": False}),
+        ):
+            text = self._figure.text(*place, words, fontsize=self._letter, color="#404040", **look)
+            wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
+            text.set_fontsize(self._letter * min(1.0, share / wide))
+
+    def _draw_keys(self) -> None:
+        letter = self._letter
         keys: list[Artist] = []
         look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
-        if len(stage.actuators):
+        if len(self._scene.actuators):
             keys.append(Line2D([], [], markerfacecolor="white", label="actuator", **look))
-        if len(stage.trail):
+        if len(self._scene.trail[0]):
             keys.append(Line2D([], [], color=PATH_COLOUR, linewidth=letter * 0.2, label="trail"))
         for state, (colour, name) in SHADES.items():
             if (self._rows[1] == state).any():
                 keys.append(Patch(color=colour, alpha=0.25, linewidth=0, label=name))
         if keys:
-            place: dict[str, Any] = {
-                "loc": "lower right",
-                "bbox_to_anchor": (0.985, 0.115),
-                "borderpad": 0,
-                "labelspacing": 0.3,
-            }
-            self._figure.legend(handles=keys, fontsize=letter * 0.9, frameon=False, handlelength=1.4, **place)
-
-    def _fit(self, text: Text, share: float) -> None:
-        """Make letters so small that a text is no wider than a share of the picture."""
-        wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
-        text.set_fontsize(float(text.get_fontsize()) * min(1.0, share / wide))
+            place: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (0.985, 0.115), "borderpad": 0}
+            look = {"frameon": False, "handlelength": 1.4, "labelspacing": 0.3, "fontsize": letter * 0.9}
+            self._figure.legend(handles=keys, **place, **look)
 
     @property
     def _rows(self) -> tuple[FloatArray, IntArray]:
         """When (r,), in the clock's unit, the part came to its states (r,), as far as the run is stored."""
-        run = self._stage.run
+        run = self._scene.run
         known = run.rows.time <= run.time[-1]
         state = run.rows.state[known]
         return np.append(run.rows.time[known], run.time[-1]) * self._time_unit.per_si, np.append(state, state[-1:])
 
-    def _draw_clock(self) -> tuple[Text, Text]:
-        last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
-        self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
-        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True, "path_effects": HALO}
-        clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)
-        below = 0.972 - 2.7 * self._letter * DPI / 72 / self._layout.height
-        state = self._figure.text(0.031, below, "", fontsize=1.15 * self._letter, **common)
-        return clock, state
-
-    def _draw_time_line(self) -> Line2D:
-        run, unit, letter = self._stage.run, self._time_unit, self._letter
-        axes = self._figure.add_axes((0.045, 0.09, 0.8, 0.024), facecolor="none")
-        edges = run.time * unit.per_si
+    def _draw_time_line(self) -> None:
+        unit, letter = self._time_unit, self._letter
+        begin, end = (self._scene.run.time[[0, -1]] * unit.per_si).tolist()
+        axes = self._figure.add_axes(LINE, facecolor="none")
         rows, known = self._rows
         for state, (colour, _) in SHADES.items():
-            parts = [(rows[begin], rows[end] - rows[begin]) for begin, end in stretches(known == state)]
+            parts = [(rows[first], rows[last] - rows[first]) for first, last in stretches(known == state)]
             axes.broken_barh(parts, (0, 1), color=colour, alpha=0.25, linewidth=0)
         axes.set_yticks([])
         axes.set_ylim(0, 1)
-        if len(edges) > 1:
-            axes.set_xlim(edges[0], edges[-1])
-            axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS))
-        else:
-            axes.set_xlim(edges[0] - 1, edges[0] + 1)
-            axes.set_xticks(edges)
+        axes.set_xlim(*((begin, end) if end > begin else (begin - 1, begin + 1)))
+        axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS) if end > begin else FixedLocator([begin]))
         axes.tick_params(labelsize=0.9 * letter, length=2, pad=2)
+        axes.spines[:].set_linewidth(0.6)
         self._figure.text(0.862, 0.0845, unit.name, fontsize=0.9 * letter, va="top")
-        for spine in axes.spines.values():
-            spine.set_linewidth(0.6)
-        return axes.axvline(edges[0], color="black", linewidth=max(letter / 6, 1.2), animated=True)
 
     def _draw_map(self) -> None:
         """Where on the plate the frame is."""
-        stage, layout = self._stage, self._layout
-        side = 0.2 * min(layout.width, layout.height)
-        axes = self._figure.add_axes(
-            (0.975 - side / layout.width, 0.92 - side / layout.height, side / layout.width, side / layout.height)
-        )
-
-        run = stage.run
-        draw_rim(axes, stage.outer, linewidths=0.8, clip_on=False)
-        corner, sides = stage.frame[0], np.ptp(stage.frame, axis=0)
-        axes.add_patch(
-            Rectangle(tuple(corner), *sides, facecolor=PATH_COLOUR, edgecolor=to_rgb(PATH_COLOUR), linewidth=1.5)
-        )
+        run, layout, frame = self._scene.run, self._layout, self._scene.frame
+        wide, tall = 0.2 * min(layout.width, layout.height) / np.array([layout.width, layout.height])
+        axes = self._figure.add_axes((0.975 - wide, 0.92 - tall, wide, tall))
+        draw_rim(axes, run.points[outer_edges(run.triangles)], linewidths=0.8, clip_on=False)
+        axes.add_patch(Rectangle(tuple(frame[0]), *np.ptp(frame, axis=0), color=PATH_COLOUR, linewidth=1.5))
         axes.set_aspect("equal", anchor="NE")
         axes.set_axis_off()
         axes.set_xlim(run.points[:, 0].min(), run.points[:, 0].max())
         axes.set_ylim(run.points[:, 1].min(), run.points[:, 1].max())
-        axes.margins(0.02)

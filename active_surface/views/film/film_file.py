@@ -5,41 +5,26 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
 from tempfile import TemporaryFile
-from typing import IO, Protocol
 
 import numpy as np
-from PIL import Image as Pictures
 
 from active_surface.arrays import Image
 from coupling import whole_file
 
 FORMATS = ("mp4", "gif", "png")
 # Settings of ffmpeg: H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours are chosen for
-# the whole film.
-H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
+# the whole film; numbered pictures.
+H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"]
 COLOURS = "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=sierra2_4a"
-ENCODERS = {"mp4": H264, "gif": ["-filter_complex", COLOURS]}
+ENCODERS = {"mp4": [*H264, "-f", "mp4"], "gif": ["-filter_complex", COLOURS, "-f", "gif"], "png": ["-f", "image2"]}
 MAX_GIF_FPS = 50  # viewers slow down faster films
 MAX_GIF_FRAMES = 600  # which are all in memory
-PICTURE = re.compile(r"\d{5}\.png")
-
-
-class Writer(Protocol):
-    """Takes the frames one after the other."""
-
-    def add(self, image: Image) -> None:
-        """Add the picture (height, width, 3) of the next frame."""
-
-    def end(self) -> None:
-        """Put down what is not yet written."""
-
-    def drop(self) -> None:
-        """Let go of what is open; what was written will be thrown away."""
+PICTURE, NUMBERED = re.compile(r"\d{5}\.png"), "%05d.png"
 
 
 def format_of(output: Path | None, requested: str | None) -> str:
@@ -60,36 +45,69 @@ def format_of(output: Path | None, requested: str | None) -> str:
 
 
 def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames: int) -> None:
-    """Raises ValueError when a film cannot be written so, with all that is wrong: better before the work than after."""
-    mistakes = []
+    """Raises ValueError when a film cannot be written so: better before the work than after."""
     if kind == "mp4" and any(side % 2 for side in size):
-        mistakes.append(f"Input size must be even numbers for mp4; got {size[0]}x{size[1]}")
+        raise ValueError(f"Input size must be even numbers for mp4; got {size[0]}x{size[1]}")
     if kind == "gif" and fps > MAX_GIF_FPS:
-        mistakes.append(f"Input fps must be at most {MAX_GIF_FPS} for gif; got {fps:g}")
+        raise ValueError(f"Input fps must be at most {MAX_GIF_FPS} for gif; got {fps:g}")
     if kind == "gif" and frames > MAX_GIF_FRAMES:
-        mistakes.append(f"Input slow-motion must make at most {MAX_GIF_FRAMES} frames of a gif; got {frames}")
+        raise ValueError(f"Input slow-motion must make at most {MAX_GIF_FRAMES} frames of a gif; got {frames}")
     if kind == "png" and path.exists() and not _ours(path):
-        mistakes.append(f"Input output must be a new folder or one of frames; got {path}, which has something else")
+        raise ValueError(f"Input output must be a new folder or one of frames; got {path}, which has something else")
     if kind != "png" and path.is_dir():
-        mistakes.append(f"Input output must be a file; got {path}, which is a folder")
-    if mistakes:
-        raise ValueError("\n".join(mistakes))
+        raise ValueError(f"Input output must be a file; got {path}, which is a folder")
 
 
 @contextmanager
-def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Writer]:
-    """Write a film that replaces `path` as a whole when the `with` block ends well.
+def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Callable[[Image], None]]:
+    """Write a film that replaces `path` as a whole when the `with` block ends well; it gets what takes the next frame.
 
-    Raises RuntimeError when there is no ffmpeg, OSError when the film cannot be written.
+    Raises OSError when the film cannot be written.
     """
     with whole_file(path.resolve(), replace=_replace_folder if kind == "png" else os.replace) as partial:
-        writer: Writer = _Folder(partial) if kind == "png" else _Film(partial, kind, size, fps)
+        if kind == "png":
+            shutil.rmtree(partial, ignore_errors=True)  # of a film that was killed
+            partial.mkdir()
+        with _ffmpeg(partial, kind, size, fps) as add:
+            yield add
+
+
+@contextmanager
+def _ffmpeg(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Callable[[Image], None]]:
+    """What takes frames for a film by ffmpeg, which runs in the folder of pictures so that its name has no pattern."""
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    frames = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps!r}", "-i", "-"]
+    name, folder = (NUMBERED, path) if kind == "png" else (path, path.parent)
+    command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[kind], f"file:{name}"]
+    with TemporaryFile() as errors:
+        # In a session of its own: Ctrl-C is for us, who then end it.
+        process = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=errors, cwd=folder, start_new_session=True)
+        pipe = process.stdin
+        assert pipe is not None
+
+        def end() -> None:
+            with suppress(BrokenPipeError):
+                pipe.close()
+            if process.wait() != 0:
+                errors.seek(0)
+                text = errors.read().decode(errors="replace").strip() or f"exit code {process.returncode}"
+                raise OSError(f"ffmpeg cannot write the film: {text}")
+
+        def add(image: Image) -> None:
+            try:
+                pipe.write(np.ascontiguousarray(image).data)
+            except BrokenPipeError:
+                end()
+
         try:
-            yield writer
-            writer.end()
-        except BaseException:
-            writer.drop()
-            raise
+            yield add
+            end()
+        finally:
+            process.kill()
+            process.wait()
+            with suppress(BrokenPipeError):
+                pipe.close()
 
 
 def _replace_folder(partial: Path, path: Path) -> None:
@@ -108,65 +126,6 @@ def _replace_folder(partial: Path, path: Path) -> None:
         older.rename(path)
         raise
     shutil.rmtree(older)
-
-
-class _Film:
-    """A film by ffmpeg; its path is absolute, as ffmpeg would take others for options or protocols."""
-
-    def __init__(self, path: Path, kind: str, size: tuple[int, int], fps: float) -> None:
-        from imageio_ffmpeg import get_ffmpeg_exe
-
-        frames = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps!r}", "-i", "-"]
-        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[kind], "-f", kind, f"file:{path}"]
-        self._errors = TemporaryFile()  # noqa: SIM115
-        # In a session of its own: Ctrl-C is for us, who then end it.
-        self._ffmpeg = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=self._errors, start_new_session=True)
-
-    def add(self, image: Image) -> None:
-        try:
-            self._pipe.write(np.ascontiguousarray(image).data)
-        except BrokenPipeError:
-            self.end()
-
-    def end(self) -> None:
-        with suppress(BrokenPipeError):
-            self._pipe.close()
-        self._ffmpeg.wait()
-        self._errors.seek(0)
-        text = self._errors.read().decode(errors="replace").strip()
-        self._errors.close()
-        if self._ffmpeg.returncode != 0:
-            raise OSError(f"ffmpeg cannot write the film: {text or f'exit code {self._ffmpeg.returncode}'}")
-
-    def drop(self) -> None:
-        self._ffmpeg.kill()
-        self._ffmpeg.wait()
-        with suppress(BrokenPipeError):
-            self._pipe.close()
-        self._errors.close()
-
-    @property
-    def _pipe(self) -> IO[bytes]:
-        assert self._ffmpeg.stdin is not None
-        return self._ffmpeg.stdin
-
-
-class _Folder:
-    """Numbered pictures."""
-
-    def __init__(self, path: Path) -> None:
-        shutil.rmtree(path, ignore_errors=True)  # of a film that was killed
-        path.mkdir()
-        self._path, self._count = path, 0
-
-    def add(self, image: Image) -> None:
-        self._count += 1
-        Pictures.fromarray(image).save(self._path / f"{self._count:05d}.png")
-
-    def end(self) -> None:
-        pass
-
-    drop = end
 
 
 def _ours(path: Path) -> bool:

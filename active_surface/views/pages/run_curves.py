@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.views.lines import cut_in
+from active_surface.views.geometry import cut_in
 from active_surface.views.pages.packed import packed
 from common import Unit, unit_for
 from coupling import Margin, Summary, report, silent, summary_of

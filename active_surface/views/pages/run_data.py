@@ -8,13 +8,11 @@ import numpy as np
 from matplotlib.colors import Normalize, to_hex
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
-from active_surface.views.lines import cut_in
-from active_surface.views.pages.modes import modes_of
+from active_surface.views.geometry import Spots, coarse, cut_in, exaggeration, inside, outer_edges, spots_of
+from active_surface.views.modes import modes_of
 from active_surface.views.pages.moments import MAX_EVENTS, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
-from active_surface.views.rounding import exaggeration
-from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
 from common import Unit, unit_for
 from coupling import report
 from coupling.pictures import MARKS, Scale, path_window

@@ -8,14 +8,22 @@ from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
 from active_surface.cli.program import main
-from active_surface.views.pages.modes import SEEN, modes_of
+from active_surface.views.geometry import (
+    coarse,
+    exaggeration,
+    inside,
+    outer_edges,
+    round_above,
+    round_below,
+    spots_of,
+    thinned,
+)
+from active_surface.views.modes import SEEN, modes_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.page_file import notes_of, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import _around
-from active_surface.views.pages.sweep_paths import spread, thinned
+from active_surface.views.pages.sweep_paths import spread
 from active_surface.views.result_file import result_of
-from active_surface.views.rounding import exaggeration, round_above, round_below
-from active_surface.views.triangles import coarse, inside, outer_edges, spots_of
 from coupling.report import with_micro_signs
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -1,7 +1,8 @@
-"""Triangles of a drawn surface: where points lie in them, and their outer edges."""
+"""Geometry of what is drawn: triangles of a surface, lines in pieces or thinned, and round numbers."""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,11 @@ from active_surface.arrays import BoolArray, FloatArray, IntArray
 from meshes import cross
 
 SLIVER = 0.01  # of a cell's area: smaller triangles of a thinned surface are none
+
+DIGITS = (1, 2, 5)
+DRAWN_HEIGHT = 0.2  # of a length: heights are drawn about so large
+MIN_EXAGGERATION = 1.5  # a smaller one counts as 1
+SLACK = 1e-9  # relative: a number that is round but for rounding errors is round
 
 
 class Spots(NamedTuple):
@@ -76,3 +82,58 @@ def outer_edges(triangles: IntArray) -> IntArray:
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     return np.asarray(unique[count == 1])
+
+
+def cut_in(parts: IntArray) -> tuple[IntArray, FloatArray]:
+    """Pieces of a line that are cut in so many parts each: of every part's beginning its piece, and how far along."""
+    piece = np.repeat(np.arange(len(parts)), parts)
+    return piece, (np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[piece]
+
+
+def thinned(line: FloatArray, apart: float) -> FloatArray:
+    """Those points of a line (n, 2) that a line through them needs to pass all others within `apart`.
+
+    By Ramer, Douglas and Peucker: the farthest point stays while it is too far away.
+    """
+    kept = np.zeros(len(line), dtype=bool)
+    kept[[0, -1]] = True
+    pieces = [(0, len(line) - 1)]
+    while pieces:
+        first, last = pieces.pop()
+        if last - first < 2:
+            continue
+        away = _distances(line[first + 1 : last], line[first], line[last])
+        farthest = int(np.argmax(away))
+        if away[farthest] > apart:
+            middle = first + 1 + farthest
+            kept[middle] = True
+            pieces += [(first, middle), (middle, last)]
+    return line[kept]
+
+
+def _distances(points: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:
+    """How far points (n, 2) are from a straight piece."""
+    along = end - begin
+    length = float(along @ along)
+    share = np.clip((points - begin) @ along / length, 0, 1) if length > 0 else np.zeros(len(points))
+    return np.asarray(np.hypot(*(points - begin - share[:, None] * along).T))
+
+
+def round_below(value: float) -> float:
+    """The largest 1, 2 or 5 with a power of ten that is not above a positive number."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(digit * power for digit in DIGITS if digit * power <= value * (1 + SLACK))
+
+
+def round_above(value: float) -> float:
+    """The smallest one that is not below it."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return min(digit * power for digit in (*DIGITS, 10) if digit * power >= value * (1 - SLACK))
+
+
+def exaggeration(height: float, length: float) -> float:
+    """The factor by which heights [m] of something so long [m] are drawn larger: a round number, or 1."""
+    exact = DRAWN_HEIGHT * length / height if height > 0 else 1.0
+    if exact < MIN_EXAGGERATION:
+        return 1.0
+    return min(round_below(exact), round_above(exact), key=lambda factor: abs(math.log(factor / exact)))
