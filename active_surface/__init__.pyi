@@ -48,6 +48,8 @@ from particle import (
     Energy as Energy,
     Event as Event,
     EventKind as EventKind,
+    FaceLaw as FaceLaw,
+    Footprint as Footprint,
     FrictionTable as FrictionTable,
     HermiteDrive as HermiteDrive,
     Interrupted as Interrupted,

@@ -13,6 +13,8 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "Energy",
     "Event",
     "EventKind",
+    "FaceLaw",
+    "Footprint",
     "FrictionTable",
     "HermiteDrive",
     "Interrupted",

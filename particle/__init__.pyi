@@ -4,7 +4,9 @@ from .drives.points import HermiteDrive as HermiteDrive, TableDrive as TableDriv
 from .drives.table import AnyDrive as AnyDrive
 from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
+from .friction.face import FaceLaw as FaceLaw
 from .friction.table import FrictionTable as FrictionTable
+from .footprint import Footprint as Footprint
 from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind, Outcome as Outcome, State as State
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState

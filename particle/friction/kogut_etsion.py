@@ -12,15 +12,16 @@ integrals over ranges of interference. Corrections to their printed form are lis
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from particle.footprint import Footprint
 from particle.friction.contact import TABLE, FrictionLaw, check_loads, friction_limits, new_law
-from particle.friction.quadrature import from_power, on_panels
+from particle.friction.face import FaceLaw
+from particle.friction.quadrature import from_power, lowest, on_panels
 from particle.friction_input import PAPER_PLASTICITY_INDEX, KogutEtsionInput
 from particle.types import FloatArray
 
@@ -95,6 +96,37 @@ class KogutEtsion(KogutEtsionInput):
         values = (2 / 3 * unit * k * w * load, 2 * unit * theta * (near + touching), 2 / 3 * unit * k * w * shear)
         p, f_s, q = (np.reshape(value, d.shape) for value in values)
         return p, f_s, q
+
+    def far_adhesion(self, separation: ArrayLike) -> FloatArray:
+        """F_s [N] at separations d / sigma (n,) beyond the reach of all asperities, to rounding from d = 40 on."""
+        nodes, weights = np.polynomial.hermite_e.hermegauss(24)
+        eps = self.intermolecular_distance / self.roughness
+        gap = eps + np.asarray(separation, dtype=float)[:, None] - self.asperity_width * nodes
+        near = 4 / 3 * ((eps / gap) ** 2 - 0.25 * (eps / gap) ** 8) @ (weights / math.sqrt(2 * math.pi))
+        unit = self.contact_area * math.pi * self.asperity_beta * self.adhesion_energy / self.roughness
+        return np.asarray(2 * unit * near)
+
+    def on_face(self, footprint: Footprint, hessian: ArrayLike = ((0.0, 0.0), (0.0, 0.0))) -> FaceLaw:
+        """The contact of a face with a surface that is curved under it: this law, point by point, over its own area.
+
+        Parameters
+        ----------
+        footprint : Footprint
+            The face. Its own area counts, not `contact_area`.
+        hessian : (2, 2) array
+            Second derivatives of the surface under the face, 1/m, in the face's axes; negative on a hump.
+
+        Returns
+        -------
+        law : FaceLaw
+            With `pull_off` and `largest_load` [N], `friction_limit(load)` [N] and `torque_limit(load)` [N m].
+
+        Raises
+        ------
+        ValueError
+            The Hessian is no symmetric matrix.
+        """
+        return FaceLaw(self, footprint, hessian)
 
     def net_load(self, separation: ArrayLike) -> FloatArray:
         """P - F_s [N] at separations of any shape."""
@@ -198,15 +230,3 @@ class KogutEtsion(KogutEtsionInput):
         above = (load - adhesion) / self.pull_off + 1
         above[d == self.branch[1]] = 0.0
         return np.log1p(np.sqrt(np.maximum(above, 0.0))), np.log(limit)
-
-
-def lowest(f: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
-    """Where a smooth f is least between two places.
-
-    Found where the derivative of its polynomial vanishes: the values themselves are flat to rounding over 1e-8 there.
-    """
-    polynomial = np.polynomial.Chebyshev.interpolate(f, 12, domain=[low, high])
-    roots = polynomial.deriv().roots()
-    level = roots.real[(np.abs(roots.imag) < 1e-6) & (roots.real > low) & (roots.real < high)]
-    places = np.concatenate([[low, high], level])
-    return float(places[np.argmin(polynomial(places))])

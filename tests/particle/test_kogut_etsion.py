@@ -12,7 +12,7 @@ import pytest
 
 from particle import KogutEtsion
 from particle.friction.contact import TABLE
-from particle.friction.kogut_etsion import lowest
+from particle.friction.quadrature import lowest
 
 PAPER_MASS = 2e-9  # kg
 

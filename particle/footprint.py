@@ -1,0 +1,130 @@
+"""The face of a part: a rectangle, a disc or a polygon, and the rules that integrate over it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from particle.checks import finite, positive, refuse
+from particle.types import FloatArray
+
+FLAT = 1e-9  # of the squared size: a polygon with less area has none
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """The flat face on which a part stands, seen from above, in axes of its own; made by its three class methods.
+
+    The origin is the foot of the centre of mass: for a part of uniform thickness the centroid, to which `rectangle`,
+    `disc` and `polygon` move the face.
+    """
+
+    corners: FloatArray  # (n, 2) m, counter-clockwise, from the centroid; of a disc none, (0, 2)
+    radius: float = 0.0  # m, of a disc
+
+    @classmethod
+    def rectangle(cls, width: float, height: float) -> Footprint:
+        """A rectangle with sides [m] along the part's x and y.
+
+        Raises
+        ------
+        ValueError
+            A side is not positive; names each.
+        """
+        sides = {"width": width, "height": height}
+        refuse("Footprint", [(positive(side), name, "positive, in m", side) for name, side in sides.items()])
+        return cls(np.array([[-width, -height], [width, -height], [width, height], [-width, height]]) / 2)
+
+    @classmethod
+    def disc(cls, radius: float) -> Footprint:
+        """A disc; ValueError where the radius [m] is not positive."""
+        refuse("Footprint", [(positive(radius), "radius", "positive, in m", radius)])
+        return cls(np.zeros((0, 2)), float(radius))
+
+    @classmethod
+    def polygon(cls, corners: Sequence[Sequence[float]]) -> Footprint:
+        """A simple polygon, convex or not, by its corners (n, 2) [m] in order.
+
+        Raises
+        ------
+        ValueError
+            There are fewer than three corners, one is no pair of numbers, sides cross, or there is no area.
+        """
+        wanted = "three or more pairs of lengths in m, in order around the part, whose sides do not cross"
+        pairs = [len(pair) == 2 and all(finite(value) for value in pair) for pair in corners]
+        refuse("Footprint", [(len(pairs) >= 3 and all(pairs), "corners", wanted, corners)])
+        points = np.array(corners, dtype=float)
+        area, centroid, _ = _moments(points)
+        solid = abs(area) > FLAT * np.ptp(points) ** 2 and not _crosses(points)
+        refuse("Footprint", [(bool(solid), "corners", wanted, corners)])
+        return cls((points if area > 0 else points[::-1]) - centroid)
+
+    @cached_property
+    def area(self) -> float:
+        """m^2."""
+        return math.pi * self.radius**2 if self.radius else float(_moments(self.corners)[0])
+
+    @cached_property
+    def second_moments(self) -> FloatArray:
+        """(2, 2) m^2, the mean of rho rho^T over the face, rho counted from the centroid."""
+        return np.eye(2) * self.radius**2 / 4 if self.radius else _moments(self.corners)[2]
+
+    @cached_property
+    def reach(self) -> float:
+        """m, how far the face's farthest point is from its centroid."""
+        return self.radius or float(np.hypot(*self.corners.T).max())
+
+    def rule(self, points: int) -> tuple[FloatArray, FloatArray]:
+        """Places (n, 2) [m] and weights (n,) that add up to 1: the mean over the face of a smooth function.
+
+        `points` Gauss points from the centroid outwards and along each side: exact for polynomials of degree
+        2 points - 2, and as good for these times the distance from the centroid. A face that is not star-shaped has
+        some places outside, with negative weights.
+        """
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        share, part = (nodes + 1) / 2, weights / 2
+        if self.radius:
+            angle = 2 * math.pi * (np.arange(2 * points) + 0.5) / (2 * points)
+            r, w = self.radius * share[:, None], (2 * part * share)[:, None] / (2 * points)
+            places = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1)
+            return places.reshape(-1, 2), np.broadcast_to(w, places.shape[:2]).ravel()
+        # A triangle from the centroid to each side; where the face is not star-shaped some of them count negatively.
+        b, c = self.corners, np.roll(self.corners, -1, axis=0)
+        s, t = share[:, None, None], share[None, :, None]
+        places = s * (b[:, None, None] + t * (c - b)[:, None, None])
+        twice = (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])[:, None, None]
+        return places.reshape(-1, 2), (np.outer(part * share, part) * twice / self.area).ravel()
+
+
+def _moments(corners: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+    """Signed area, centroid (2,) and central second moments over the area (2, 2) of a polygon."""
+    origin = corners.mean(axis=0)
+    a = corners - origin
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    area = cross.sum() / 2
+    centroid = ((a + b) * cross[:, None]).sum(axis=0) / (6 * area) if area else np.zeros(2)
+    pairs = np.einsum("k,ki,kj->ij", cross, a, a) + np.einsum("k,ki,kj->ij", cross, b, b)
+    mixed = np.einsum("k,ki,kj->ij", cross, a, b)
+    moments = (2 * pairs + mixed + mixed.T) / (24 * area) if area else np.zeros((2, 2))
+    return float(area), centroid + origin, moments - np.outer(centroid, centroid)
+
+
+def _cross(o: FloatArray, a: FloatArray, b: FloatArray) -> float:
+    return float((a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]))
+
+
+def _crosses(corners: FloatArray) -> bool:
+    """Whether two sides of a polygon that are not neighbours meet."""
+    sides = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
+    for i, (a, b) in enumerate(sides):
+        for k, (c, d) in enumerate(sides[i + 2 :], i + 2):
+            if (i, k) == (0, len(sides) - 1):
+                continue
+            if _cross(a, b, c) * _cross(a, b, d) <= 0 and _cross(c, d, a) * _cross(c, d, b) <= 0:
+                return True
+    return False
