@@ -15,13 +15,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from active_surface.steering.disturbances import REPORTED, deviations, draws
 from active_surface.steering.legs import Approach, Leg, end_of, scheduled
 from active_surface.steering.objectives import prepared
 from active_surface.steering.paths import Paths, path_of, settled
 from active_surface.steering.picture import draw_aim, draw_plan
 from active_surface.steering.result import Aimed, Planned, SteeringResult
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
 from active_surface.steering.task import Route, Task
 from coupling import ProgressCallback, no_progress, run_case, warnings
 from coupling.case import length_text, write_case
@@ -130,17 +129,14 @@ def aim_over(
         if watch is not None:
             watch(approach.look)
 
-    def close() -> Aimed:
-        way = approach.close()
+    def result() -> Aimed | None:
+        if (way := approach.best) is None:
+            return None
         case = way.case.model_copy(update={"name": f"{task.name}_aimed"})
         return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
-    def comment(result: Aimed) -> str:
-        x, y = map(length_text, task.target)
-        return f"The drives bring the part to within {length_text(result.distance)} of ({x}, {y})."
-
     approach = Approach(surface, task, threads, count)
-    return _found(approach.run, close, comment, file, surface, threads)
+    return _found(approach.run, result, _aim_comment, file, surface, threads)
 
 
 def plan_over(
@@ -152,65 +148,58 @@ def plan_over(
 ) -> Planned:
     """The same as `plan` over an existing surface; writes a case file at most, before it looks at the scatter."""
     work = _Plan(surface, route, threads, tell)
-    return _found(work.run, work.close, _plan_comment, file, surface, threads)
+    return _found(work.run, lambda: work.planned, _plan_comment, file, surface, threads)
 
 
 class _Plan:
-    """A plan, as its legs are found."""
+    """A plan, as its legs are found; `planned` has those so far, also after Ctrl-C."""
 
     def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: ProgressCallback) -> None:
         self._surface, self._route, self._threads, self._tell = surface, route, threads, tell
-        self._approach: Approach | None = None  # under way
         self._legs: tuple[Leg, ...] = ()
-        self._planned: Planned | None = None
+        self.planned: Planned | None = None
 
     def run(self) -> None:
-        """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
+        """Find leg after leg, until one fails."""
         route, place = self._route, self._route.case.part.position
         for number, target in enumerate(route.through):
-            done = self._planned
-            if done and math.dist(place, target) <= route.settings.tolerance:  # the part rests there already
-                self._planned = replace(done, arrivals=(*done.arrivals, done.arrivals[-1]), tried=done.tried + 1)
-                continue
+            if done := self.planned:
+                if done.failure:
+                    return
+                place = end_of(done.trajectory)
+                if math.dist(place, target) <= route.settings.tolerance:  # the part rests there already
+                    self.planned = replace(done, arrivals=(*done.arrivals, done.arrivals[-1]), tried=done.tried + 1)
+                    continue
             try:
                 task = route.leg(number, place)
             except ValueError as error:
                 assert done  # the first leg was checked with the route
-                self._planned = replace(done, failure=f"leg {number}: {error}")
+                self.planned = replace(done, failure=f"leg {number}: {error}")
                 return
             tell = partial(_tell_leg, self._tell, number, len(route.through))
-            self._approach = Approach(self._surface, task, self._threads, tell, joined=True)
-            self._approach.run()
-            planned = self._join(self._approach)
-            if planned.failure:
-                return
-            place = end_of(planned.trajectory)
-
-    def close(self) -> Planned:
-        """What was found; KeyboardInterrupt where there is nothing."""
-        if self._approach is not None:
+            approach = Approach(self._surface, task, self._threads, tell, joined=True)
             try:
-                self._join(self._approach)
-            except KeyboardInterrupt:
-                if self._planned is None:
-                    raise
-        assert self._planned is not None
-        return self._planned
+                approach.run()
+            finally:
+                with unbroken():
+                    self._join(approach)
 
-    def _join(self, approach: Approach) -> Planned:
-        """Take the legs of an approach into the schedule, and find out where the whole of it leads."""
-        self._approach, done = None, self._planned
+    def _join(self, approach: Approach) -> None:
+        """Take the best legs of an approach into the schedule, and find out where the whole of it leads."""
+        done, way = self.planned, approach.best
         arrivals, tried, paths = (done.arrivals, done.tried, done.paths) if done else ((), 0, 0)
         paths += approach.paths
-        self._planned = done and replace(done, paths=paths)
-        way, now = approach.close(), arrivals[-1] if arrivals else 0.0
+        if way is None:
+            self.planned = done and replace(done, paths=paths)
+            return
+        now = arrivals[-1] if arrivals else 0.0
         end = round(now + way.end, 9)
         self._legs += tuple(leg._replace(start=leg.start + now) for leg in way.legs)
         case = scheduled(self._route.case, self._legs, end)
         case = case.model_copy(update={"name": f"{self._route.name}_planned"})
         path = path_of(Paths(case, self._surface, self._threads), case)
         failure = "" if settled(path) else f"leg {len(arrivals)}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
-        self._planned = Planned(
+        self.planned = Planned(
             route=self._route,
             case=case,
             trajectory=path,
@@ -219,7 +208,15 @@ class _Plan:
             paths=paths,
             failure=failure,
         )
-        return self._planned
+
+
+def _aim_comment(result: Aimed) -> str:
+    """The head of a case file: how near the drives bring the part to the target."""
+    x, y = map(length_text, result.task.target)
+    away = length_text(result.distance)
+    if result.reached:
+        return f"The drives bring the part to within {away} of ({x}, {y})."
+    return f"The target ({x}, {y}) is missed: the drives bring the part to {away} from it."
 
 
 def _plan_comment(result: Planned) -> str:
@@ -254,7 +251,7 @@ def _files(task: Task | Route, output: str | Path | None, case: str, picture: st
 
 def _found(
     run: Callable[[], object],
-    close: Callable[[], Kind],
+    best: Callable[[], Kind | None],
     comment: Callable[[Kind], str],
     file: Path | None,
     surface: SurfaceMotion,
@@ -264,15 +261,16 @@ def _found(
 
     Raises KeyboardInterrupt where there are no drives yet.
     """
-    result: Kind | None = None
-    interrupted = False
+    result, interrupted = None, False
     try:
         try:
             run()
         except KeyboardInterrupt:
             interrupted = True
         with unbroken():
-            result = replace(close(), interrupted=interrupted)
+            if (result := best()) is None:
+                raise KeyboardInterrupt
+            result = replace(result, interrupted=interrupted)
             if file is not None:
                 result = replace(result, files=(write_case(result.case, file, comment(result)),))
         return result if interrupted else replace(result, scatter=_scatter(result, surface, threads))

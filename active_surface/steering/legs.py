@@ -8,7 +8,8 @@ searched before all this.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Final, NamedTuple
 
 from active_surface.steering.knobs import Knobs, Stop, at_rest, own_drives, shortest
@@ -17,7 +18,7 @@ from active_surface.steering.search import Search
 from active_surface.steering.task import Place, Task, is_schedulable
 from coupling import ProgressCallback, build_drive
 from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
-from particle import SurfaceMotion, Trajectory
+from particle import SurfaceMotion, Trajectory, unbroken
 
 PAUSE: Final = 5e-4  # s, at rest between legs
 STEP: Final = 1e-6  # s, of which times of legs are multiples
@@ -63,56 +64,44 @@ class Way(NamedTuple):
 
 
 class Approach:
-    """The legs that bring the part of a task to its target, as they are found."""
+    """The legs that bring the part of a task to its target; `best` has the best of them so far, also after Ctrl-C."""
 
     def __init__(
         self, surface: SurfaceMotion, task: Task, threads: int | None, tell: ProgressCallback, joined: bool = False
     ) -> None:
         """tell: is called with the number of paths so far and its maximum.  joined: other legs follow in a schedule."""
         self._surface, self._task, self._threads, self._tell, self._joined = surface, task, threads, tell, joined
-        self._horizon, self._before, self._searches = task.case.run.duration, 0, 0
-        self._search: tuple[Search, float] | None = None  # under way, for a leg from a time [s] on
-        self._chain: Way | None = None  # legs to which another may be added
-        self._best: Way | None = None
+        self._horizon, self._searches = task.case.run.duration, 0
+        self._under_way: Callable[[], Way | None] = lambda: None  # the way of the current search
+        self.best: Way | None = None
+        self.paths = 0  # followed, without those of the current search
 
     def run(self) -> None:
-        """Search; after Ctrl-C `close` has the best so far."""
+        """Search."""
         task, max_paths, robust = self._task, self._task.settings.max_paths, self._task.settings.is_robust
         if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
-            self._try(task, 0.0, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
-        self._chain = None
-        if not robust and not self.reached and FIRST * self._horizon >= self._min_duration(task):
-            self._try(task.within(FIRST * self._horizon), 0.0, MAX_PATHS[0])
+            self._search(task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
+        if not robust and not self.reached and FIRST * self._horizon >= _min_duration(task):
+            chain = self._search(task.within(FIRST * self._horizon), None, MAX_PATHS[0])
             for at_most in MAX_PATHS[1:]:
-                following, start = self._next()
-                if self.reached or following is None:
+                if self.reached or chain is None or (following := self._next(chain)) is None:
                     break
-                self._try(following, start, at_most)
+                way = self._search(following, chain, at_most)
+                if way and way.cost <= max(NEARER * chain.cost, task.settings.tolerance):
+                    chain = way
         if not self.reached:
-            self._try(task, 0.0, max_paths, wide=True)
-
-    @property
-    def paths(self) -> int:
-        """How many have been followed."""
-        return self._before + (self._search[0].paths if self._search else 0)
+            self._search(task, None, max_paths, wide=True)
 
     @property
     def reached(self) -> bool:
         """Whether the part comes to rest within the tolerance and no drive moves it again."""
-        if self._best is None or self._task.settings.is_robust:
+        if self.best is None or self._task.settings.is_robust:
             return False
-        return self._best.cost <= self._task.settings.tolerance
-
-    def close(self) -> Way:
-        """The best way; KeyboardInterrupt where there is none."""
-        self._end_leg()
-        if self._best is None:
-            raise KeyboardInterrupt
-        return self._best
+        return self.best.cost <= self._task.settings.tolerance
 
     def look(self) -> Trajectory | None:
         """The path of the drives that are best so far in the current search; None: there are none."""
-        way = self._way() or self._best
+        way = self._under_way() or self.best
         return way.path if way else None
 
     def _follow_own(self) -> bool:
@@ -128,7 +117,7 @@ class Approach:
         if Knobs(task.case, settings, moving, around=True).own is None:  # beyond bounds that the user states
             return False
         way = self._followed((Leg(0.0, own, moving),), ())
-        self._before += 1
+        self.paths += 1
         away = math.dist(task.case.part.position, task.target)
         if not settled(way.path) or way.cost >= away:
             return False
@@ -136,38 +125,37 @@ class Approach:
             self._keep(way)
         return way.cost <= NEAR * away
 
-    def _try(self, task: Task, start: float, at_most: int, around: bool = False, wide: bool = False) -> None:
-        """Search for the drives of a leg that begins at a time [s], on so many paths at most."""
+    def _search(
+        self, task: Task, chain: Way | None, at_most: int, around: bool = False, wide: bool = False
+    ) -> Way | None:
+        """Search for the drives of a leg after a chain of legs, on so many paths at most; return them all."""
         if (left := self._task.settings.max_paths - self.paths) <= 0:
-            return
-        paths = Paths(task.case, self._surface, self._threads)
-        knobs = Knobs(task.case, task.settings, task.movers, around, wide)
-        self._search = Search(paths, task, knobs, self._count, min(at_most, left), self._searches), start
-        self._searches += 1
-        self._search[0].run()
-        self._end_leg()
-
-    def _end_leg(self) -> None:
-        """Keep the leg of the current search if it brings the part near enough."""
-        way = self._way()
-        self._before, self._search = self.paths, None
-        if way is None:
-            return
-        tolerance = self._task.settings.tolerance
-        if self._chain is None or way.cost <= max(NEARER * self._chain.cost, tolerance):
-            self._chain = way
-        self._keep(way)
-
-    def _way(self) -> Way | None:
-        """The legs before the current search and the best of its own; None: it has no drives yet."""
-        if self._search is None or not self._search[0].has_drives:
             return None
-        search, start = self._search
-        actuators = search.actuators
-        leg = Leg(start, actuators, _moving(actuators) if search.knobs.around else search.movers)
-        chain = self._chain if start > 0 else None
-        way = self._followed((*chain.legs, leg) if chain else (leg,), (chain.stops if chain else ()) + search.stops)
-        return way._replace(cost=search.cost) if self._task.settings.is_robust else way
+        knobs = Knobs(task.case, task.settings, task.movers, around, wide)
+        paths = Paths(task.case, self._surface, self._threads)
+        search = Search(paths, task, knobs, self._count, min(at_most, left), self._searches)
+        self._searches += 1
+        self._under_way = partial(self._way, search, task.movers, chain)
+        try:
+            search.run()
+        finally:
+            with unbroken():
+                way, self._under_way = self._under_way(), lambda: None
+                self.paths += search.paths
+                if way:
+                    self._keep(way)
+        return way
+
+    def _way(self, search: Search, movers: tuple[int, ...], chain: Way | None) -> Way | None:
+        """The legs of a chain and the best of a search; None: it has no drives yet."""
+        best, knobs = search.best, search.knobs
+        if not math.isfinite(best.cost):
+            return None
+        actuators = knobs.actuators(best.values)
+        leg = Leg(chain.end if chain else 0.0, actuators, _moving(actuators) if knobs.around else movers)
+        legs, stops = (chain.legs, chain.stops) if chain else ((), ())
+        way = self._followed((*legs, leg), stops + knobs.stops(best.values))
+        return way._replace(cost=best.cost) if self._task.settings.is_robust else way
 
     def _followed(self, legs: tuple[Leg, ...], stops: tuple[Stop, ...]) -> Way:
         """The way of legs."""
@@ -178,26 +166,28 @@ class Approach:
         return Way(legs, case, path, away, stops)
 
     def _keep(self, way: Way) -> None:
-        if self._best is None or way.cost < self._best.cost:
-            self._best = way
+        if self.best is None or way.cost < self.best.cost:
+            self.best = way
 
-    def _next(self) -> tuple[Task | None, float]:
-        """The task of the next leg, None where there is none, and when it begins [s]."""
-        if self._chain is None or not settled(self._chain.path):
-            return None, 0.0
-        start = self._chain.end
+    def _next(self, chain: Way) -> Task | None:
+        """The task of the leg after a chain of legs; None where there is none."""
+        if not settled(chain.path):
+            return None
+        left = self._horizon - chain.end
         try:
-            task = self._task.within(self._horizon - start, end_of(self._chain.path))
+            task = self._task.within(left, end_of(chain.path))
         except ValueError:  # no way leads on from here, as from above the only actuator
-            return None, start
-        return (task if self._horizon - start >= self._min_duration(task) else None), start
-
-    def _min_duration(self, task: Task) -> float:
-        return CYCLES * shortest(task.case, task.settings, task.movers)
+            return None
+        return task if left >= _min_duration(task) else None
 
     def _count(self, done: int, _: int) -> None:
         max_paths = self._task.settings.max_paths
-        self._tell(min(self._before + done, max_paths), max_paths)
+        self._tell(min(self.paths + done, max_paths), max_paths)
+
+
+def _min_duration(task: Task) -> float:
+    """The shortest time for a leg [s]."""
+    return CYCLES * shortest(task.case, task.settings, task.movers)
 
 
 def _moving(actuators: tuple[ActuatorCase, ...]) -> tuple[int, ...]:

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.disturbances import SEARCHED, Disturbance, deviations, draws, stroke_room
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.paths import Paths, cost, driven
-from active_surface.steering.scatter import conditional_value_at_risk
+from active_surface.steering.robustness import (
+    SEARCHED,
+    Disturbance,
+    conditional_value_at_risk,
+    deviations,
+    draws,
+    stroke_room,
+)
 from active_surface.steering.settings import Settings
 from active_surface.steering.task import Task, able
-from coupling import ProgressCallback, answers_drives, build_drives, build_friction, follow_part, shared_surface
+from coupling import answers_drives, build_drives, build_friction, follow_part, shared_surface
 from coupling.case import ActuatorCase, Case
 from particle import AnyDrive, SurfaceMotion, interruptible
 
@@ -169,55 +175,3 @@ class Objective:
         if settings.cvar is not None:
             return conditional_value_at_risk(costs, settings.cvar)
         return np.asarray(np.quantile(costs, settings.quantile or 0.0, axis=1))
-
-
-class Best(NamedTuple):
-    """The best of several settings of the knobs."""
-
-    cost: float = np.inf  # m
-    values: FloatArray = np.zeros(0)  # of the knobs
-    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
-
-
-class Trials:
-    """The trials of a search: their number is limited, and the best are kept.
-
-    `best` is the best setting of the knobs so far, `recent` the best since `forget` was called.
-    """
-
-    def __init__(self, goal: Objective, tell: ProgressCallback, max_paths: int) -> None:
-        """max_paths: number of paths after which the search ends."""
-        self._goal, self._tell, self._max_paths = goal, tell, max_paths
-        self.best = self.recent = Best()
-
-    def forget(self) -> None:
-        """Start `recent` anew."""
-        self.recent = Best()
-
-    @property
-    def reached(self) -> bool:
-        """Whether the most recent best is within the tolerance."""
-        return self.recent.cost <= self._goal.tolerance
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether fewer paths are left than one trial takes."""
-        return self._goal.paths + self._goal.runs > self._max_paths
-
-    def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).
-
-        Trials beyond the paths that are left cost more than any other.
-        """
-        left = (self._max_paths - self._goal.paths) // self._goal.runs
-        room = min(max(left, 0 if np.isfinite(self.best.cost) else 1), len(values))
-        if not room:
-            return np.zeros((len(values), 2)), np.full(len(values), np.inf)
-        offsets, costs = self._goal.evaluate(values[:room])
-        nearest = int(np.argmin(costs))
-        if costs[nearest] < self.recent.cost:
-            self.recent = Best(float(costs[nearest]), values[nearest].copy(), offsets[nearest])
-            self.best = min(self.best, self.recent, key=lambda one: one.cost)
-        self._tell(min(self._goal.paths, self._max_paths), self._max_paths)
-        beyond = len(values) - room
-        return np.pad(offsets, ((0, beyond), (0, 0))), np.pad(costs, (0, beyond), constant_values=np.inf)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.disturbances import Disturbance, disturbed
+from active_surface.steering.robustness import Disturbance, disturbed
 from active_surface.studies import contact_of, start_faults
 from coupling import PathTask, build_drives, build_part, follow, one_blas_thread
 from coupling.case import ActuatorCase, Case

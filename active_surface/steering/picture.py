@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
 from active_surface.steering.result import Aimed, Planned, SteeringResult
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import Scatter
 from common import NOTHING, Drawing, quantity_text, unit_for
 from coupling.case import PlateCase
 from coupling.pictures import (

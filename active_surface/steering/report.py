@@ -6,11 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from active_surface.steering.disturbances import DEFAULT_TEXT, disturbance_text
 from active_surface.steering.following import Progress
 from active_surface.steering.knobs import Stop
 from active_surface.steering.result import Aimed, Planned, SteeringResult
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
 from coupling.case import ActuatorCase, amplitude
 from coupling.report import joined

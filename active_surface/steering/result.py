@@ -11,7 +11,7 @@ import numpy as np
 from active_surface.steering.knobs import Stop
 from active_surface.steering.legs import Leg
 from active_surface.steering.paths import settled
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import Scatter
 from active_surface.steering.settings import Settings
 from active_surface.steering.task import Place, Route, Task
 from coupling.case import Case

@@ -7,16 +7,17 @@ the smooth piece; Newton's method, with one difference for each smooth knob, fin
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.optimize import lsq_linear
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.knobs import Knobs, Stop
-from active_surface.steering.objectives import Objective, Trials
+from active_surface.steering.knobs import Knobs
+from active_surface.steering.objectives import Objective
 from active_surface.steering.paths import Paths
 from active_surface.steering.task import Task
 from coupling import ProgressCallback
-from coupling.case import ActuatorCase
 
 ANYWHERE = 0.3  # of the knobs' ranges: the first spread of a population
 AROUND = 0.1  # likewise, around a setting
@@ -33,6 +34,58 @@ PROGRESS = 0.8  # of the previous cost; a step that leaves more ends the method
 OPTIONS = {"bounds": [0, 1], "verbose": -9, "maxiter": 10_000, "tolfun": 1e-9, "tolx": 1e-7, "tolflatfitness": 5}
 
 
+class Best(NamedTuple):
+    """The best of several settings of the knobs."""
+
+    cost: float = np.inf  # m
+    values: FloatArray = np.zeros(0)  # of the knobs
+    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
+
+
+class Trials:
+    """The trials of a search: their number is limited, and the best are kept.
+
+    `best` is the best setting of the knobs so far, `recent` the best since `forget` was called.
+    """
+
+    def __init__(self, goal: Objective, tell: ProgressCallback, max_paths: int) -> None:
+        """max_paths: number of paths after which the search ends."""
+        self._goal, self._tell, self._max_paths = goal, tell, max_paths
+        self.best = self.recent = Best()
+
+    def forget(self) -> None:
+        """Start `recent` anew."""
+        self.recent = Best()
+
+    @property
+    def reached(self) -> bool:
+        """Whether the most recent best is within the tolerance."""
+        return self.recent.cost <= self._goal.tolerance
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether fewer paths are left than one trial takes."""
+        return self._goal.paths + self._goal.runs > self._max_paths
+
+    def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).
+
+        Trials beyond the paths that are left cost more than any other.
+        """
+        left = (self._max_paths - self._goal.paths) // self._goal.runs
+        room = min(max(left, 0 if np.isfinite(self.best.cost) else 1), len(values))
+        if not room:
+            return np.zeros((len(values), 2)), np.full(len(values), np.inf)
+        offsets, costs = self._goal.evaluate(values[:room])
+        nearest = int(np.argmin(costs))
+        if costs[nearest] < self.recent.cost:
+            self.recent = Best(float(costs[nearest]), values[nearest].copy(), offsets[nearest])
+            self.best = min(self.best, self.recent, key=lambda one: one.cost)
+        self._tell(min(self._goal.paths, self._max_paths), self._max_paths)
+        beyond = len(values) - room
+        return np.pad(offsets, ((0, beyond), (0, 0))), np.pad(costs, (0, beyond), constant_values=np.inf)
+
+
 class Search:
     """Finds the drives that bring a part to a task's target within its case's duration; equal seeds, equal results.
 
@@ -44,21 +97,29 @@ class Search:
         self, paths: Paths, task: Task, knobs: Knobs, tell: ProgressCallback, max_paths: int, number: int
     ) -> None:
         """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers."""
-        self.knobs, self.movers = knobs, task.movers
-        self._newton_range, self._seed, self._populations = NEWTON_RANGE * paths.surface.size, task.settings.seed, 0
-        self._number, self._paths = number, paths
+        self.knobs, self._paths, self._number, self._populations = knobs, paths, number, 0
+        self._newton_range, self._seed = NEWTON_RANGE * paths.surface.size, task.settings.seed
         self._robust: Trials | None = None
         if task.settings.is_robust:
             self._robust = Trials(Objective(task, knobs, paths, is_robust=True), tell, max_paths)
             max_paths = max(max_paths // 2, 1)
         self._nominal = Trials(Objective(task, knobs, paths), tell, max_paths)
 
+    @property
+    def paths(self) -> int:
+        """How many have been followed."""
+        return self._paths.count
+
+    @property
+    def best(self) -> Best:
+        """The best setting so far; its cost is infinite where there is none."""
+        return self._robust.best if self._robust and np.isfinite(self._robust.best.cost) else self._nominal.best
+
     def run(self) -> None:
         """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
         nominal, robust, start = self._nominal, self._robust, self.knobs.own if self.knobs.around else None
-        counting = nominal if robust is None else robust
         if not self.knobs.knobs or start is not None:
-            counting.of((np.zeros(0) if start is None else start)[None])
+            (robust or nominal).of((np.zeros(0) if start is None else start)[None])
         if not self.knobs.knobs:
             return
         if robust is None:
@@ -70,37 +131,6 @@ class Search:
             robust.of(nominal.recent.values[None])
         if not robust.exhausted:
             self._evolve(robust, 0.0, robust.best.values)
-
-    @property
-    def paths(self) -> int:
-        """How many have been followed."""
-        return self._paths.count
-
-    @property
-    def has_drives(self) -> bool:
-        """Whether there are drives."""
-        return bool(np.isfinite(self.cost))
-
-    @property
-    def cost(self) -> float:
-        """That of the best drives [m]."""
-        return self._trials.best.cost
-
-    @property
-    def stops(self) -> tuple[Stop, ...]:
-        """The knobs of the best drives that stand at a bound."""
-        return self.knobs.stops(self._trials.best.values)
-
-    @property
-    def actuators(self) -> tuple[ActuatorCase, ...]:
-        """All actuators with the best drives."""
-        return self.knobs.actuators(self._trials.best.values)
-
-    @property
-    def _trials(self) -> Trials:
-        if self._robust is not None and np.isfinite(self._robust.best.cost):
-            return self._robust
-        return self._nominal
 
     def _evolve(self, trials: Trials, newton_range: float, middle: FloatArray | None = None) -> None:
         """Evolve a population, around `middle` (n,) or anywhere, until it makes no more progress.

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.disturbances import deviations
 from active_surface.steering.knobs import shortest
 from active_surface.steering.reach import off_the_line
+from active_surface.steering.robustness import deviations
 from active_surface.steering.settings import Settings
 from coupling.case import (
     SAME_PLACE,

@@ -12,10 +12,10 @@ from sweeps import PLATE
 from active_surface.cli.program import main
 from active_surface.steering import Settings, Task, aim
 from active_surface.steering.aiming import aim_over
-from active_surface.steering.disturbances import REPORTED, SEARCHED, Disturbance, deviations, draws
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.objectives import SAMPLES
 from active_surface.steering.paths import Paths, cost
+from active_surface.steering.robustness import REPORTED, SEARCHED, Disturbance, deviations, draws
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part

@@ -12,11 +12,11 @@ from sweeps import PLATE
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, Task, aim, plan
 from active_surface.steering.aiming import aim_over, plan_over
-from active_surface.steering.disturbances import Disturbance
-from active_surface.steering.objectives import SAMPLES, Trials
+from active_surface.steering.objectives import SAMPLES
 from active_surface.steering.paths import Paths
 from active_surface.steering.report import lines, plan_figures, plan_lines, scatter_line
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import Disturbance, Scatter
+from active_surface.steering.search import Trials
 from coupling import build_surface, read_case
 from particle import Outcome
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from active_surface.steering import Aimed, Task, picture
-from active_surface.steering.scatter import Scatter
+from active_surface.steering.robustness import Scatter
 from coupling import read_case
 from particle import ConstantFriction, Micropart, platform_surface, simulate
 

@@ -1,15 +1,16 @@
-"""Disturbances: how runs deviate from their case, field by field."""
+"""Robustness: how runs deviate from their case, field by field, and how far from the target they end."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from active_surface.arrays import FloatArray
 from coupling.case import ActuatorCase, Case, Location, Quantity, SegmentCase, Table, find_field, lattice_of, quoted
 
 FRICTION: Final = "friction"  # as a whole, which no field of a case is
@@ -31,18 +32,17 @@ class Deviation(NamedTuple):
 
 
 class Change(NamedTuple):
-    """What becomes of the value at a location: the other way where it is not valid then."""
+    """A deviation at one of its locations."""
 
     location: Location
     amount: float
-    is_relative: bool
-    reader: TypeAdapter[Any] | None
+    deviation: Deviation
 
     def of(self, value: float) -> float:
         """The changed value; one that the field cannot have is changed the other way, or not at all."""
         for amount in (self.amount, -self.amount):
-            changed = value * (1 + amount) if self.is_relative else value + amount
-            if self.reader is None or _is_valid(self.reader, changed):
+            changed = value * (1 + amount) if self.deviation.is_relative else value + amount
+            if self.deviation.reader is None or _is_valid(self.deviation.reader, changed):
                 return changed
         return value
 
@@ -96,16 +96,6 @@ def _deviation(case: Case, path: str, size: object) -> Deviation:
 
 
 _KINDS: Final = {"whole": "whole number", "text": "text"}
-_PERCENT: Final = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
-_EXAMPLES: Final = {
-    "m": "1 um",
-    "s": "5 us",
-    "Hz": "2 Hz",
-    "kg": "1e-10 kg",
-    "N": "1 nN",
-    "rad": "1 deg",
-    "m/s": "1 mm/s",
-}
 
 
 def _size(size: object, unit: str) -> tuple[float, bool]:
@@ -113,26 +103,23 @@ def _size(size: object, unit: str) -> tuple[float, bool]:
 
     unit: of the field in SI; "": only a share will do, "1": a plain number.
     """
-    expected = 'a share such as "2 %"'
-    if unit:
-        expected += f", or {_EXAMPLES[unit]!r} and the like".replace("'", '"') if unit in _EXAMPLES else ", or a number"
-    percent = _PERCENT.fullmatch(size) if isinstance(size, str) else None
+    is_share = isinstance(size, str) and size.rstrip().endswith("%")
     try:
-        if percent:
-            amount = float(percent[1]) / 100
+        if is_share:
+            amount = float(str(size).rstrip()[:-1]) / 100
         elif unit == "1" and isinstance(size, (int, float)) and not isinstance(size, bool):
             amount = float(size)
         elif unit not in ("", "1") and isinstance(size, str):
-            amount = Quantity(unit, _EXAMPLES.get(unit, f"1 {unit}")).parse(size)
+            amount = Quantity(unit, f"1 {unit}").parse(size)
         else:
             raise ValueError
     except ValueError:
-        raise ValueError(f"must deviate by {expected}; got {quoted(size)}") from None
-    if not amount >= 0 or not math.isfinite(amount) or (percent and amount >= 1):
-        raise ValueError(
-            f"must deviate by 0 or more{', and by less than 100 %' if percent else ''}; got {quoted(size)}"
-        )
-    return amount, bool(percent)
+        other = {"": "", "1": " or a number"}.get(unit, f" or a quantity in {unit}")
+        raise ValueError(f'must deviate by a share such as "2 %"{other}; got {quoted(size)}') from None
+    if not 0 <= amount < (1 if is_share else math.inf):
+        less = ", and by less than 100 %" if is_share else ""
+        raise ValueError(f"must deviate by 0 or more{less}; got {quoted(size)}")
+    return amount, is_share
 
 
 def draws(count: int, deviating: Sequence[Deviation], seed: int, stream: int) -> list[Disturbance]:
@@ -155,32 +142,21 @@ def _drawn(uniform: Sequence[float], deviating: Sequence[Deviation]) -> Disturba
             radius, angle = one.size * math.sqrt(next(numbers)), 2 * math.pi * next(numbers)
             shift = radius * math.cos(angle), radius * math.sin(angle)
         else:
-            changes += [
-                Change(location, one.size * (2 * next(numbers) - 1), one.is_relative, one.reader)
-                for location in one.locations
-            ]
+            changes += [Change(place, one.size * (2 * next(numbers) - 1), one) for place in one.locations]
     return Disturbance(friction, shift, tuple(changes))
 
 
 def disturbed(case: Case, changes: Sequence[Change]) -> Case:
     """A case with changed values in its part, its friction and its drives; those of segments with their actuator's."""
-    actuators, updates = list(case.actuators), dict[str, Any]()
+    tables: dict[str, Any] = {"part": case.part, "friction": case.friction}
+    actuators = list(case.actuators)
     for change in changes:
         head, *keys = change.location
         if head == "actuators":
-            actuators[int(keys[0])] = _driven(actuators[int(keys[0])], keys[1:], change)
+            actuators[int(keys[0])] = _changed(actuators[int(keys[0])], keys[1:], change)
         else:
-            updates[str(head)] = _changed(updates.get(str(head), getattr(case, str(head))), keys, change)
-    return case.model_copy(update={**updates, "actuators": tuple(actuators), "source": None})
-
-
-def _driven(actuator: ActuatorCase, keys: Sequence[Any], change: Change) -> ActuatorCase:
-    if len(keys) == 1 and actuator.segments is not None and keys[0] in SegmentCase.model_fields:
-        return actuator.model_copy(
-            update={"segments": tuple(_changed(segment, keys, change) for segment in actuator.segments)}
-        )
-    changed: ActuatorCase = _changed(actuator, keys, change)
-    return changed
+            tables[str(head)] = _changed(tables[str(head)], keys, change)
+    return case.model_copy(update={**tables, "actuators": tuple(actuators), "source": None})
 
 
 def _changed(value: Any, keys: Sequence[Any], change: Change) -> Any:
@@ -188,11 +164,18 @@ def _changed(value: Any, keys: Sequence[Any], change: Change) -> Any:
     if not keys:
         return value if value is None else change.of(value)
     key, *rest = keys
-    if isinstance(value, Table):
-        if (key == "stroke" and not getattr(value, key)) or (key == "dwell" and getattr(value, "cycle", "") == "hold"):
-            return value
-        return value.model_copy(update={key: _changed(getattr(value, key), rest, change)})
-    return (*value[: int(key)], _changed(value[int(key)], rest, change), *value[int(key) + 1 :])
+    if not isinstance(value, Table):
+        return (*value[: int(key)], _changed(value[int(key)], rest, change), *value[int(key) + 1 :])
+    if _is_in_segments(value, key) and not rest:
+        return value.model_copy(update={"segments": tuple(_changed(one, keys, change) for one in value.segments)})
+    if (key == "stroke" and not getattr(value, key)) or (key == "dwell" and getattr(value, "cycle", "") == "hold"):
+        return value
+    return value.model_copy(update={key: _changed(getattr(value, key), rest, change)})
+
+
+def _is_in_segments(value: Any, key: object) -> bool:
+    """Whether the segments of an actuator have the values of a key."""
+    return isinstance(value, ActuatorCase) and value.segments is not None and key in SegmentCase.model_fields
 
 
 def stroke_room(deviating: Sequence[Deviation], actuator: int, largest: float) -> float:
@@ -216,8 +199,7 @@ def _has_value(case: Case, location: Location) -> bool:
     value: Any = case
     for key in location:
         owner, value = value, getattr(value, key) if isinstance(key, str) else value[key]
-    in_segments = isinstance(owner, ActuatorCase) and owner.segments is not None
-    return value is not None or (in_segments and location[-1] in SegmentCase.model_fields)
+    return value is not None or _is_in_segments(owner, location[-1])
 
 
 def _is_valid(reader: TypeAdapter[Any], value: float) -> bool:
@@ -226,3 +208,42 @@ def _is_valid(reader: TypeAdapter[Any], value: float) -> bool:
     except ValidationError:
         return False
     return True
+
+
+@dataclass(frozen=True, eq=False)
+class Scatter:
+    """The ends of disturbed runs, and their distances from the target."""
+
+    ends: FloatArray  # (n, 2) m
+    distance: FloatArray  # (n,) m, inf for lost parts: detached, beyond the rim or the like
+
+    @property
+    def lost(self) -> int:
+        """How many were lost."""
+        return int(np.isinf(self.distance).sum())
+
+    def quantile(self, share: float) -> float:
+        """The distance [m] within which a share of the parts ends; inf where too many were lost."""
+        # That of one of the parts: between two of them, or between one and inf, there is none.
+        return float(np.quantile(self.distance, share, method="inverted_cdf"))
+
+    def cvar(self, share: float) -> float:
+        """The conditional value at risk: the mean distance [m] of parts beyond a quantile; inf where one is lost."""
+        return float(conditional_value_at_risk(self.distance, share)) if not self.lost else math.inf
+
+    def as_dict(self) -> dict[str, Any]:
+        """Its figures by name, in SI units; None where too many were lost."""
+        shares = {"median": 0.5, "nine_in_ten": 0.9, "worst": 1.0}
+        quantiles = {name: self.quantile(share) for name, share in shares.items()}
+        within = {name: distance if math.isfinite(distance) else None for name, distance in quantiles.items()}
+        cvar = self.cvar(0.9)
+        tail = {"cvar_nine_in_ten": cvar if math.isfinite(cvar) else None}
+        return {"count": len(self.distance), **within, **tail, "lost": self.lost}
+
+
+def conditional_value_at_risk(distances: FloatArray, share: float) -> FloatArray:
+    """The mean of the largest 1 - share of distances (..., n), by Rockafellar and Uryasev's (2000) formula."""
+    # The one in which the share ends counts in part, so that it is continuous in the share.
+    quantile = np.quantile(distances, share, axis=-1, method="inverted_cdf", keepdims=True)
+    beyond = np.maximum(distances - quantile, 0).mean(axis=-1) / (1 - share)
+    return np.asarray(quantile[..., 0] + beyond)

@@ -6,8 +6,7 @@ from scipy.optimize import minimize_scalar
 from sweeps import PLATE, read_text
 
 from active_surface.steering import Settings, Task, objective, read_task
-from active_surface.steering.disturbances import REPORTED, deviations, disturbed, draws
-from active_surface.steering.scatter import conditional_value_at_risk
+from active_surface.steering.robustness import REPORTED, conditional_value_at_risk, deviations, disturbed, draws
 from coupling import run_case
 from coupling.case import CaseError
 
@@ -50,7 +49,7 @@ def test_what_cannot_deviate_is_refused_with_all_else(tmp_path):
     for message in (
         "part.mas must be a field of the case; part has no mas; did you mean mass?",
         "plate.thickness must be a field of the part, the friction or what drives an actuator",
-        'actuators.*.stroke must deviate by a share such as "2 %", or "1 um" and the like; got "2 Hz"',
+        'actuators.*.stroke must deviate by a share such as "2 %" or a quantity in m; got "2 Hz"',
         'part.position must be a length such as "1 um", of which nothing is a share; got "1 %"',
         'friction.limit must deviate by 0 or more, and by less than 100 %; got "120 %"',
         "actuators.*.cycle must be a field that is a number; got actuators.*.cycle, which is a text",
