@@ -24,9 +24,10 @@ from active_surface.steering.robustness import REPORTED, Scatter, deviations, dr
 from active_surface.steering.task import Route, Task
 from coupling import ProgressCallback, no_progress, run_case, warnings
 from coupling.case import length_text, write_case
+from coupling.report import joined
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
 
-Kind = TypeVar("Kind", bound=SteeringResult)
+Kind = TypeVar("Kind", Aimed, Planned)
 
 
 def aim(
@@ -197,7 +198,7 @@ class _Plan:
         self._legs += tuple(leg._replace(start=leg.start + now) for leg in way.legs)
         case = scheduled(self._route.case, self._legs, end)
         case = case.model_copy(update={"name": f"{self._route.name}_planned"})
-        path = path_of(Paths(case, self._surface, self._threads), case)
+        path = path_of(case, self._surface)
         failure = "" if settled(path) else f"leg {len(arrivals)}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
         self.planned = Planned(
             route=self._route,
@@ -220,10 +221,12 @@ def _aim_comment(result: Aimed) -> str:
 
 
 def _plan_comment(result: Planned) -> str:
-    """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
+    """The head of a case file: which way-points are missed, how near the part comes to each, and why no farther."""
+    missed = [str(number) for number, reached in enumerate(result.reached) if not reached]
     legs = zip(result.route.through, result.distances, strict=False)
     places = [f"{length_text(off)} of ({length_text(x)}, {length_text(y)})" for (x, y), off in legs]
-    sentences = [f"The drives carry the part to within {', '.join(places)}."] if places else []
+    sentences = [f"The drives miss way-point{'s' * (len(missed) > 1)} {joined(missed)}."] if missed else []
+    sentences += [f"The drives carry the part to within {', '.join(places)}."] if places else []
     return "\n".join([*sentences, result.failure] if result.failure else sentences)
 
 

@@ -61,7 +61,7 @@ class Followed:
     @property
     def distances(self) -> list[float]:
         """From where the part was measured last on the way to each way-point to that [m]; of those that are done."""
-        return [math.dist(end, target) for end, target in zip(self.ends, self.route.through, strict=False)]
+        return self.route.distances(self.ends)
 
     @property
     def complete(self) -> bool:

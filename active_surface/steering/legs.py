@@ -161,7 +161,7 @@ class Approach:
         """The way of legs."""
         case, task = self._task.case, self._task
         case = scheduled(case, legs, self._horizon) if len(legs) > 1 else driven(case, legs[0].actuators)
-        path = path_of(Paths(case, self._surface, self._threads), case)
+        path = path_of(case, self._surface)
         away = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
         return Way(legs, case, path, away, stops)
 

@@ -58,9 +58,9 @@ class Paths:
         return [build_part(case, (x, y)) for case, (x, y) in zip(cases, starts.tolist(), strict=True)]
 
 
-def path_of(paths: Paths, case: Case) -> Trajectory:
-    """The path of a case."""
-    return paths.of([(case.actuators, Disturbance())])[0]
+def path_of(case: Case, surface: SurfaceMotion) -> Trajectory:
+    """The path of a case over a surface."""
+    return Paths(case, surface, 1).of([(case.actuators, Disturbance())])[0]
 
 
 def settled(trajectory: Trajectory) -> bool:

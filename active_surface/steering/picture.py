@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from matplotlib.patches import Circle
 
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import Scatter
+from active_surface.steering.task import Place
 from common import NOTHING, Drawing, quantity_text, unit_for
 from coupling.case import PlateCase
 from coupling.pictures import (
@@ -27,8 +27,6 @@ from coupling.pictures import (
     save_picture,
 )
 from particle import HALO, Trajectory
-
-Place = tuple[float, float]
 
 SIZE = 5.6  # inches, of a panel
 SAMPLES = 4000
@@ -50,8 +48,9 @@ ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "mar
 
 def draw_aim(result: Aimed, path: Path) -> Path:
     """Draw the result of a search into a PNG file; return its path."""
-    title = f"{result.task.name}: the part ends {_off(result, result.task.target)}"
-    return _draw(result, title, [result.task.target], path)
+    missed = "" if result.reached else "the target is missed; "
+    title = f"{result.task.name}: {missed}the part ends {_off(result, result.task.target)}"
+    return _draw(result, title, path)
 
 
 def draw_plan(result: Planned, path: Path) -> Path:
@@ -61,15 +60,15 @@ def draw_plan(result: Planned, path: Path) -> Path:
     which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets) - 1}"
     tolerance = quantity_text(route.settings.tolerance, "m")
     count = f"{sum(result.reached)} of {len(route.through)} way-points within {tolerance}"
-    return _draw(result, f"{route.name}: {count}; the part ends {_off(result, targets[-1], which)}", targets, path)
+    return _draw(result, f"{route.name}: {count}; the part ends {_off(result, targets[-1], which)}", path)
 
 
-def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Path) -> Path:
-    """Draw a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
+def _draw(result: SteeringResult, title: str, path: Path) -> Path:
+    """Draw a path over its plate with the targets in their order, and the ends of disturbed runs, into a file."""
     assert result.scatter is not None
     case, trajectory, scatter = result.case, result.trajectory, result.scatter
     assert isinstance(case.plate, PlateCase)
-    line, places = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position, np.array(targets)
+    line, places = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position, np.array(result.targets)
     actuators = np.array([actuator.position for actuator in case.actuators])
     moving = np.array([bool(actuator.stroke) or actuator.segments is not None for actuator in case.actuators])
     plate = PlateView(case.plate.coarse_mesh.outline, actuators, moving=moving, numbered=True)
@@ -87,7 +86,7 @@ def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Pa
     keys += axes[-2].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
     for number, place in enumerate(drawn if len(drawn) > 1 else []):
         put_label(axes[-2], str(number), place, (11.5, 11.5), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
-    keys += _draw_ends(axes[-1], trajectory, targets[-1], scatter)
+    keys += _draw_ends(axes[-1], trajectory, result.targets[-1], scatter)
     put_title(figure, title)
     put_keys(figure, keys)
     clear_labels(figure)
@@ -95,9 +94,9 @@ def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Pa
 
 
 def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:
-    """Draw the ends around the target, without outliers, and circles that hold half and nine tenths of them.
+    """Draw the ends around the target, without outliers, and circles around half and nine tenths of them.
 
-    A circle that would have to hold lost parts is left out. Where all ends are far from the target, draw them around
+    A circle that would have to include lost parts is left out. Where all ends are far from the target, draw them around
     their median, with an arrow to the target.
     """
     circles = {share: away for share in (0.5, 0.9) if np.isfinite(away := scatter.quantile(share))}

@@ -12,9 +12,9 @@ from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
 from coupling.case import ActuatorCase, amplitude
-from coupling.report import joined
+from coupling.report import MICRO, joined
 
-MICRO, MILLI = 1e6, 1e3
+MILLI = 1e3
 WIDER = 2.0  # times a bound: what a hint proposes
 KEYS = ("frequency", "stroke", "delay", "cycles")
 
@@ -30,12 +30,7 @@ def figures(result: Aimed) -> dict[str, Any]:
         "interrupted": result.interrupted,
         "paths": result.paths,
         "at_bounds": [
-            {
-                "actuator": stop.knob.actuator,
-                "key": stop.knob.key,
-                "bound": stop.bound,
-            }
-            for stop in result.stops
+            {"actuator": stop.knob.actuator, "key": stop.knob.key, "bound": stop.bound} for stop in result.stops
         ],
         "legs": [
             {
@@ -50,28 +45,17 @@ def figures(result: Aimed) -> dict[str, Any]:
 
 def lines(result: Aimed) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
-    verdict = _verdict(result.distance, result.task.settings.tolerance)
-    if result.distance <= result.task.settings.tolerance and not result.reached:
-        verdict += ", but it does not rest there for good"
-    how = ", stopped by Ctrl-C" if result.interrupted else ""
-    rows = [
-        ("target", point(result.task.target)),
-        (
-            "distance",
-            f"{result.distance * MICRO:.4f} um, {verdict}; {result.paths} paths{how}",
-        ),
-        ("outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"),
-    ]
+    task, first = result.task, result.legs[0]
+    distance = _verdict(result.distance, task.settings.tolerance)
+    if result.distance <= task.settings.tolerance and not result.reached:
+        distance += ", but the part has not come to a final rest"
+    rows = [("target", point(task.target)), ("distance", f"{distance}; {_paths(result)}"), _outcome(result)]
     for number, leg in enumerate(result.legs):
         if len(result.legs) > 1:
             rows.append((f"leg {number}", f"from {leg.start * MILLI:g} ms on"))
         rows += [(f"actuator {k}", _drive(leg.actuators[k])) for k in leg.movers]
-    others = [
-        k
-        for k, actuator in enumerate(result.legs[0].actuators if len(result.legs) == 1 else ())
-        if k not in result.legs[0].movers and amplitude(actuator)
-    ]
-    rows += [("others", "driven as in the case")] if others else []
+    others = any(amplitude(one) for k, one in enumerate(first.actuators) if k not in first.movers)
+    rows += [("others", "driven as in the case")] if others and len(result.legs) == 1 else []
     rows += [] if result.reached else [("hint", text) for text in hints(result.stops)]
     return rows + _last_lines(result)
 
@@ -83,16 +67,19 @@ def hints(stops: Sequence[Stop]) -> list[str]:
         groups.setdefault((stop.knob.key, stop.highest), []).append(stop)
     texts = []
     for (key, highest), group in groups.items():
-        numbers = sorted({stop.knob.actuator for stop in group})
+        numbers = [str(k) for k in sorted({stop.knob.actuator for stop in group})]
         low, high = min(stop.knob.low for stop in group), max(stop.knob.high for stop in group)
-        values = sorted({_value(key, stop.knob.high if highest else stop.knob.low) for stop in group})
-        own = "its" if len(numbers) == 1 else "their"
-        which = {"cycles": "largest number of cycles"}.get(key, f"{'largest' if highest else 'smallest'} {key}")
-        wider = [_value(key, low if highest else low * WIDER ** (-1 if low > 0 else 1)), _value(key, high * WIDER)]
-        wider[1] = wider[1] if highest else _value(key, high)
-        bounds = ", ".join(text if key == "cycles" else f'"{text}"' for text in wider)
-        who = f"actuator{'s' * (len(numbers) > 1)} {joined([str(k) for k in numbers])}"
-        texts.append(f"{who} stood at {own} {which}, {joined(values)}; {key} = [{bounds}] in [aim] widens it")
+        if highest:
+            high *= WIDER
+        else:
+            low *= WIDER if low < 0 else 1 / WIDER
+        bounds = ", ".join(
+            _value(key, bound) if key == "cycles" else f'"{_value(key, bound)}"' for bound in (low, high)
+        )
+        which = f"{'largest' if highest else 'smallest'} {'number of cycles' if key == 'cycles' else key}"
+        values = joined(sorted({_value(key, stop.bound) for stop in group}))
+        who, own = ("actuators", "their") if len(numbers) > 1 else ("actuator", "its")
+        texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {key} = [{bounds}] in [aim] widens it")
     return texts
 
 
@@ -107,10 +94,10 @@ def _value(key: str, value: float) -> str:
 def ended(route: Route, progress: Progress) -> tuple[bool, dict[str, Any], list[tuple[str, str]]]:
     """Whether a plan that was followed to its end met every way-point; its figures, and rows to print."""
     tolerance = route.settings.tolerance
-    distances = [math.dist(end, target) for end, target in zip(progress.ends, route.through, strict=True)]
+    distances = route.distances(progress.ends)
     complete = all(distance <= tolerance for distance in distances)
     rows = [
-        (f"way-point {k}", f"{point(target)}: {distance * MICRO:.4f} um off, {_verdict(distance, tolerance)}")
+        (f"way-point {k}", f"{point(target)}: {_verdict(distance, tolerance, ' off')}")
         for k, (target, distance) in enumerate(zip(route.through, distances, strict=True))
     ]
     rows.append(("plan", "at its end: no way-point is left"))
@@ -136,19 +123,16 @@ def plan_figures(result: Planned) -> dict[str, Any]:
 
 def plan_lines(result: Planned) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
-    rows = []
-    for k, (time, distance) in enumerate(zip(result.arrivals, result.distances, strict=True)):
-        where = f"{point(result.route.through[k])} by {time * MILLI:g} ms: {distance * MICRO:.4f} um off"
-        where += f", {_verdict(distance, result.route.settings.tolerance)}"
-        rows.append((f"leg {k}", where))
+    route, tolerance, rows = result.route, result.settings.tolerance, []
+    legs = zip(route.through, result.arrivals, result.distances, strict=False)
+    for k, (target, time, distance) in enumerate(legs):
+        verdict = _verdict(distance, tolerance, " off")
+        rows.append((f"leg {k}", f"{point(target)} by {time * MILLI:g} ms: {verdict}"))
     if result.failure:
         label, _, reason = result.failure.partition(": ")
         rows.append((label, reason))
-    tolerance = f"{result.route.settings.tolerance * MICRO:g} um"
-    count = f"{sum(result.reached)} of {len(result.route.through)} way-points within {tolerance}; {result.paths} paths"
-    rows.append(("reached", count + (", stopped by Ctrl-C" if result.interrupted else "")))
-    rows.append(("outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"))
-    return rows + _last_lines(result)
+    count = f"{sum(result.reached)} of {len(route.through)} way-points within {tolerance * MICRO:g} um"
+    return [*rows, ("reached", f"{count}; {_paths(result)}"), _outcome(result), *_last_lines(result)]
 
 
 def _common(result: SteeringResult) -> dict[str, Any]:
@@ -160,18 +144,26 @@ def _common(result: SteeringResult) -> dict[str, Any]:
 
 
 def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
-    text = disturbance_text(result.settings.disturbances)
-    scatter = (
-        "not looked for, after Ctrl-C"
-        if result.scatter is None
-        else scatter_line(result.scatter, text, result.settings.cvar)
-    )
-    warnings = [("warning", text) for text in result.warnings]
-    return [("scatter", scatter), *(("wrote", str(file)) for file in result.files), *warnings]
+    scatter = "not looked for, after Ctrl-C"
+    if result.scatter is not None:
+        text = disturbance_text(result.settings.disturbances)
+        scatter = scatter_line(result.scatter, text, result.settings.cvar)
+    rows = [("scatter", scatter), *(("wrote", str(file)) for file in result.files)]
+    return rows + [("warning", text) for text in result.warnings]
 
 
-def _verdict(distance: float, tolerance: float) -> str:
-    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um tolerance"
+def _paths(result: SteeringResult) -> str:
+    return f"{result.paths} paths{', stopped by Ctrl-C' * result.interrupted}"
+
+
+def _outcome(result: SteeringResult) -> tuple[str, str]:
+    return "outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"
+
+
+def _verdict(distance: float, tolerance: float, off: str = "") -> str:
+    """How far from a target [m] the part ends; whether that is a miss."""
+    away, of = f"{distance * MICRO:.4f} um", f"within the {tolerance * MICRO:g} um tolerance"
+    return f"{away}{off}, {of}" if distance <= tolerance else f"missed by {away}, not {of}"
 
 
 def point(place: tuple[float, float]) -> str:

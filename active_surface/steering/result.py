@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from particle import Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SteeringResult:
+class _Result:
     """A case with the best drives, and its path.
 
     scatter: None after Ctrl-C.  paths: how many were followed to find the drives.
@@ -34,19 +33,9 @@ class SteeringResult:
     warnings: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
 
-    @property
-    def settings(self) -> Settings:
-        """Bounds and effort of the search."""
-        raise NotImplementedError
-
-    @property
-    def targets(self) -> tuple[Place, ...]:
-        """The places to which there are drives [m], in their order."""
-        raise NotImplementedError
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Aimed(SteeringResult):
+class Aimed(_Result):
     """The case with the drives of an aim, its path, and how far it ends from the target.
 
     Parameters
@@ -84,7 +73,7 @@ class Aimed(SteeringResult):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Planned(SteeringResult):
+class Planned(_Result):
     """The case with the schedule of a plan, its path, and how each leg ended.
 
     Parameters
@@ -115,9 +104,7 @@ class Planned(SteeringResult):
     @property
     def distances(self) -> list[float]:
         """From the part to each way-point [m] when it has arrived there."""
-        there = self.trajectory.at(self.arrivals).position
-        ways = zip(there.tolist(), self.route.through, strict=False)  # to those where it has arrived
-        return [math.dist(place, target) for place, target in ways]
+        return self.route.distances(self.trajectory.at(self.arrivals).position.tolist())
 
     @property
     def reached(self) -> list[bool]:
@@ -128,3 +115,6 @@ class Planned(SteeringResult):
     def complete(self) -> bool:
         """Whether every way-point was reached, within the tolerance."""
         return len(self.arrivals) == len(self.route.through) and all(self.reached)
+
+
+SteeringResult = Aimed | Planned

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Final
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case import Frequency, Length, Point, Table, Time, quoted
+from coupling.case import Expected, Frequency, Length, Point, Table, Time, quoted
 
 
 @dataclass(frozen=True)
@@ -34,41 +34,23 @@ class _Bounds:
         return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
 
 
-@dataclass(frozen=True)
-class _Numbers:
-    """Marks a tuple as numbers of actuators, each once."""
-
-    expected = "a list of numbers of actuators, counted from 0, such as [0, 4]"
-
-    def validate(self, value: object) -> object:
-        good = isinstance(value, (list, tuple)) and value and all(type(k) is int and k >= 0 for k in value)
-        if not good or not isinstance(value, (list, tuple)) or len(set(value)) < len(value):
-            raise ValueError(f"must be {self.expected}, each once; got {quoted(value)}")
-        return tuple(value)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        whole = {"type": "integer", "minimum": 0}
-        return {"type": "array", "items": whole, "minItems": 1, "uniqueItems": True}
+_NUMBERS: Final = "a list of numbers of actuators, counted from 0, such as [0, 4]"
 
 
-@dataclass(frozen=True)
-class _Sizes:
-    """Marks a table of the largest deviations of fields by their paths; nested tables become one."""
+def _each_once(value: object) -> tuple[int, ...]:
+    numbers = [k for k in value if type(k) is int and k >= 0] if isinstance(value, (list, tuple)) else []
+    if not numbers or len(set(numbers)) < len(value):
+        raise ValueError(f"must be {_NUMBERS}, each once; got {quoted(value)}")
+    return tuple(numbers)
 
-    def validate(self, value: object, handler: Any) -> object:
-        if isinstance(value, dict):
-            return dict(_flattened(value))
-        return handler(value)
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+def _flat(value: object) -> object:
+    """A table of tables as one: part.mass and "part.mass" are the same."""
+    return dict(_flattened(value)) if isinstance(value, dict) else value
 
 
 def _flattened(tables: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:
-    """Yield each path in nested tables with its value: part.mass and "part.mass" are the same."""
+    """Yield each path in nested tables with its value."""
     for key, value in tables.items():
         if isinstance(value, Mapping):
             yield from _flattened(value, f"{path}{key}.")
@@ -81,12 +63,16 @@ MAX_PATHS, MAX_PATHS_DISTURBED = 10_000, 40_000
 Positive = Annotated[Frequency, Field(gt=0)]
 Waiting = Annotated[Time, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1, le=1_000_000)]
+Whole = Annotated[StrictInt, Field(ge=0)]
+Numbers = Annotated[tuple[Whole, ...], Field(min_length=1, json_schema_extra={"uniqueItems": True})]
 
 
 class Settings(Table):
     """How drives are searched for. Bounds hold for each actuator that takes part; None: they follow from its drive."""
 
-    actuators: Annotated[tuple[int, ...], _Numbers()] | None = Field(default=None, examples=[[0, 4]])
+    actuators: Annotated[Numbers, BeforeValidator(_each_once), Expected(_NUMBERS)] | None = Field(
+        default=None, examples=[[0, 4]]
+    )
     """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
     nearest: Count = 4
     """How many these are."""
@@ -108,7 +94,7 @@ class Settings(Table):
     """This quantile of the distances of disturbed runs is made small in place of the distance."""
     cvar: StrictFloat | None = Field(default=None, gt=0, lt=1, examples=[0.9])
     """The mean distance of disturbed runs beyond this quantile is made small in place of the distance."""
-    disturbances: Annotated[dict[str, Any] | None, _Sizes()] = Field(
+    disturbances: Annotated[dict[str, Any] | None, BeforeValidator(_flat)] = Field(
         default=None, examples=[{"friction": "1 %", "part.position": "1 um", "actuators.*.stroke": "1 %"}]
     )
     """How far disturbed runs deviate at most, by field; without it friction and strokes by 1 %, the start by 1 um."""
@@ -126,14 +112,12 @@ class Settings(Table):
         return self.paths or (MAX_PATHS_DISTURBED if self.is_robust else MAX_PATHS)
 
 
-class _FileName:
-    expected = 'the name of a case file such as "array_3x3.toml"'
-
-
 class AimTable(Settings):
     """The file of the `case`, beside this one; where the part is to go, unless that is told elsewhere; `Settings`."""
 
-    case: Annotated[StrictStr, _FileName()] = Field(examples=["array_3x3.toml"])
+    case: Annotated[StrictStr, Expected('the name of a case file such as "array_3x3.toml"')] = Field(
+        examples=["array_3x3.toml"]
+    )
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
     """Where the part is to go, unless the command tells it."""

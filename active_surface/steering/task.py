@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import shortest
-from active_surface.steering.reach import off_the_line
 from active_surface.steering.robustness import deviations
 from active_surface.steering.settings import Settings
+from active_surface.steering.symmetry import off_the_line
 from coupling.case import (
     SAME_PLACE,
     ActuatorCase,
@@ -91,6 +91,10 @@ class Route:
                 wrong += [f"way-point {number} {message}" for message in misplaced(self.case, place)]
         if wrong:
             raise ValueError("\n".join(wrong))
+
+    def distances(self, places: Iterable[Sequence[float]]) -> list[float]:
+        """How far off the way-points [m] are places [m], one for each way-point so far."""
+        return [math.dist(place, target) for place, target in zip(places, self.through, strict=False)]
 
     def leg(self, way_point: int, start: Place, number: int | None = None) -> Task:
         """The task to get to a way-point from a place [m] where the part rests, or in the first leg where it starts.

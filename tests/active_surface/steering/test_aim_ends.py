@@ -41,7 +41,7 @@ def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path):
     passing = aim_over(surface, Task(case, (float(end[0]), float(end[1])), Settings(**fixed)))
     assert passing.distance == 0.0 and passing.trajectory.outcome is Outcome.MOVING and not passing.reached
     assert dict(lines(passing))["distance"].startswith(
-        "0.0000 um, within the 0.5 um tolerance, but it does not rest there for good"
+        "0.0000 um, within the 0.5 um tolerance, but the part has not come to a final rest"
     )
 
 
@@ -138,7 +138,12 @@ def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, 
     assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
     comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
     off = f"{planned.distances[0] * 1e6:g} um"
-    assert comment == [f"# The drives carry the part to within {off} of (-20 um, 20 um).", f"# {planned.failure}"]
+    assert planned.reached == [False]
+    assert comment == [
+        "# The drives miss way-point 0.",
+        f"# The drives carry the part to within {off} of (-20 um, 20 um).",
+        f"# {planned.failure}",
+    ]
 
 
 @pytest.mark.slow

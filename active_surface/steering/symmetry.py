@@ -1,4 +1,4 @@
-"""Reach: the line that a part cannot leave, because everything that can push it is symmetric about it."""
+"""Symmetry: the line that a part cannot leave, because everything that can push it is symmetric about it."""
 
 from __future__ import annotations
 
