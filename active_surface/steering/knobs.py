@@ -118,13 +118,18 @@ class Knobs:
         return tuple(ends)
 
 
+def is_schedulable(actuator: ActuatorCase) -> bool:
+    """Whether segments can state its drive: a stroke that goes up and down, from the start of its cycle."""
+    return actuator.stroke is not None and actuator.cycle == "up-down" and not actuator.phase
+
+
 def own_drives(case: Case) -> tuple[ActuatorCase, ...]:
     """The actuators of a case; endless strokes, up and down, get as many cycles as end within its duration."""
     return tuple(_ended(actuator, case.run.duration) for actuator in case.actuators)
 
 
 def _ended(actuator: ActuatorCase, duration: float) -> ActuatorCase:
-    if actuator.stroke is None or actuator.cycle != "up-down" or actuator.cycles is not None or actuator.phase:
+    if not is_schedulable(actuator) or actuator.cycles is not None:
         return actuator
     cycles = _fitting(actuator.frequency or 0.0, actuator.dwell, duration - actuator.delay)
     return actuator.model_copy(update={"cycles": cycles}) if cycles > 0 else actuator
@@ -137,12 +142,10 @@ def _fitting(frequency: float, dwell: float, duration: float) -> int:
 
 def shortest(case: Case, settings: Settings, movers: Iterable[int]) -> float:
     """The time [s] within which each of the actuators that take part can end one cycle."""
-    return max(_shortest(case.actuators[k], settings, case.run.duration) for k in movers)
-
-
-def _shortest(actuator: ActuatorCase, settings: Settings, duration: float) -> float:
-    bounds = _bounds(actuator, settings, duration)
-    return bounds["delay"][0] + 1 / bounds["frequency"][1] + 2 * actuator.dwell
+    actuators = [case.actuators[k] for k in movers]
+    bounds = [_bounds(actuator, settings, case.run.duration) for actuator in actuators]
+    ends = zip(actuators, bounds, strict=True)
+    return max(keys["delay"][0] + 1 / keys["frequency"][1] + 2 * actuator.dwell for actuator, keys in ends)
 
 
 def _bounds(
@@ -163,7 +166,7 @@ def _bounds(
 
 
 def at_rest(actuator: ActuatorCase) -> ActuatorCase:
-    """An actuator held at height 0, or floating without a force."""
+    """An actuator kept at height 0, or floating without a force."""
     once: dict[str, object] = {"frequency": actuator.frequency or 1.0, "cycle": "up-down", "cycles": 1}
     none = dict.fromkeys(("delay", "dwell", "phase", "ramp"), 0.0)
     without: dict[str, object] = dict.fromkeys(("table", "segments")) | {"repeats": 1} | none

@@ -12,10 +12,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
-from active_surface.steering.knobs import Knobs, Stop, at_rest, own_drives, shortest
+from active_surface.steering.knobs import Knobs, Stop, at_rest, is_schedulable, own_drives, shortest
 from active_surface.steering.paths import Paths, cost, driven, path_of, settled
 from active_surface.steering.search import Search
-from active_surface.steering.task import Place, Task, is_schedulable
+from active_surface.steering.task import Place, Task
 from coupling import ProgressCallback, build_drive
 from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
 from particle import SurfaceMotion, Trajectory, unbroken

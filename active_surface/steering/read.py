@@ -124,17 +124,12 @@ def _case(path: Path, table: AimTable) -> Case:
 
 def read_place(text: str, option: str) -> Place:
     """The place [m] in a text such as 100,-50: two lengths, in um or with their units; ValueError names the option."""
-    message = f'{option} must be two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"; got {quoted(text)}'
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise ValueError(message)
-    lengths = []
-    for part in parts:
-        try:
-            lengths.append(LENGTH.convert(part, part.strip(), "um") if _is_number(part) else LENGTH.parse(part))
-        except ValueError as error:
-            raise ValueError(f"{message}, whose {part.strip() or 'empty part'} {error}") from None
-    return lengths[0], lengths[1]
+    try:
+        x, y = (LENGTH.parse(part if part[-1:].isalpha() else f"{part} um") for part in map(str.strip, text.split(",")))
+    except ValueError:
+        expected = 'two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"'
+        raise ValueError(f"{option} must be {expected}; got {quoted(text)}") from None
+    return x, y
 
 
 def read_measured(path: str | os.PathLike[str]) -> list[Place]:
@@ -149,11 +144,3 @@ def read_measured(path: str | os.PathLike[str]) -> list[Place]:
     if read.lost:
         raise ValueError(f"{file.name} must have a place in each row, one after each leg; got {read.lost} without")
     return list(zip(read.columns.get("x", ()), read.columns.get("y", ()), strict=True))
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -164,10 +164,10 @@ def _changed(value: Any, keys: Sequence[Any], change: Change) -> Any:
     if not keys:
         return value if value is None else change.of(value)
     key, *rest = keys
-    if not isinstance(value, Table):
-        return (*value[: int(key)], _changed(value[int(key)], rest, change), *value[int(key) + 1 :])
     if _is_in_segments(value, key) and not rest:
         return value.model_copy(update={"segments": tuple(_changed(one, keys, change) for one in value.segments)})
+    if not isinstance(value, Table):
+        return (*value[: int(key)], _changed(value[int(key)], rest, change), *value[int(key) + 1 :])
     if (key == "stroke" and not getattr(value, key)) or (key == "dwell" and getattr(value, "cycle", "") == "hold"):
         return value
     return value.model_copy(update={key: _changed(getattr(value, key), rest, change)})

@@ -38,8 +38,9 @@ _NUMBERS: Final = "a list of numbers of actuators, counted from 0, such as [0, 4
 
 
 def _each_once(value: object) -> tuple[int, ...]:
-    numbers = [k for k in value if type(k) is int and k >= 0] if isinstance(value, (list, tuple)) else []
-    if not numbers or len(set(numbers)) < len(value):
+    items = value if isinstance(value, (list, tuple)) else ()
+    numbers = [k for k in items if type(k) is int and k >= 0]
+    if not numbers or len(set(numbers)) < len(items):
         raise ValueError(f"must be {_NUMBERS}, each once; got {quoted(value)}")
     return tuple(numbers)
 
@@ -113,14 +114,14 @@ class Settings(Table):
 
 
 class AimTable(Settings):
-    """The file of the `case`, beside this one; where the part is to go, unless that is told elsewhere; `Settings`."""
+    """The file of the `case`, beside this one; where the part is to go, if that is stated here; `Settings`."""
 
     case: Annotated[StrictStr, Expected('the name of a case file such as "array_3x3.toml"')] = Field(
         examples=["array_3x3.toml"]
     )
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
-    """Where the part is to go, unless the command tells it."""
+    """Where the part is to go, unless the command states it."""
 
 
 class AimTables(Table):

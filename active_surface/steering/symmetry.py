@@ -61,8 +61,8 @@ def _keeps(case: Case, line: Direction, movers: Sequence[int]) -> bool:
         return False
     if (_across(line, pushes) > ON_LINE * np.hypot(*pushes.T)).any():
         return False
-    held = [(actuator.force is None, actuator.stiffness) for actuator in case.actuators]
-    return _is_symmetric(every[~moving], [held[k] for k in np.flatnonzero(~moving)], line, ON_LINE * farthest)
+    resting = [(actuator.force is None, actuator.stiffness) for actuator in case.actuators]
+    return _is_symmetric(every[~moving], [resting[k] for k in np.flatnonzero(~moving)], line, ON_LINE * farthest)
 
 
 def _across(line: Direction, vectors: FloatArray) -> FloatArray:

@@ -115,17 +115,17 @@ def _from(case: Case, start: Place | None) -> Case:
 
 
 def movers(case: Case, settings: Settings, target: Place) -> tuple[int, ...]:
-    """The numbers of the actuators that take part on the way to a target [m]: those that are told, or the nearest."""
-    if settings.actuators is not None:
-        return tuple(sorted(settings.actuators))
+    """The numbers of the actuators that take part on the way to a target [m]: those stated, or the nearest."""
     fit = able(case, settings)
+    if settings.actuators is not None:
+        return tuple(fit)
     away = _from_way(np.array([case.actuators[k].position for k in fit]), case.part.position, target)
     order = np.argsort(away, kind="stable")[: settings.nearest].tolist()
     return tuple(sorted(fit[k] for k in order))
 
 
 def able(case: Case, settings: Settings) -> list[int]:
-    """The numbers of the actuators that can take part, ascending: those that are told, or all that fit."""
+    """The numbers of the actuators that can take part, ascending: those stated, or all that fit."""
     if settings.actuators is not None:
         return sorted(settings.actuators)
     return [k for k, actuator in enumerate(case.actuators) if not _unfit(actuator, settings)]
@@ -182,11 +182,6 @@ def _actuator_mistakes(case: Case, settings: Settings) -> Iterator[Mistake]:
             yield "actuators", f"must be driven by a stroke that goes up and down; that of actuator {k} {reason}"
     if settings.actuators is None and all(_unfit(actuator, settings) for actuator in case.actuators):
         yield "case", "must have an actuator whose stroke goes up and down, or whose bounds are given; it has none"
-
-
-def is_schedulable(actuator: ActuatorCase) -> bool:
-    """Whether segments can state its drive: a stroke that goes up and down, from the start of its cycle."""
-    return actuator.stroke is not None and actuator.cycle == "up-down" and not actuator.phase
 
 
 def _unfit(actuator: ActuatorCase, settings: Settings) -> str:
