@@ -217,7 +217,7 @@ def _aim_comment(result: Aimed) -> str:
     away = length_text(result.distance)
     if result.reached:
         return f"The drives bring the part to within {away} of ({x}, {y})."
-    return f"The target ({x}, {y}) is missed: the drives bring the part to {away} from it."
+    return f"The target ({x}, {y}) is missed: the part ends {away} from it."
 
 
 def _plan_comment(result: Planned) -> str:

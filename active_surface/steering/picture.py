@@ -48,9 +48,9 @@ ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "mar
 
 def draw_aim(result: Aimed, path: Path) -> Path:
     """Draw the result of a search into a PNG file; return its path."""
-    missed = "" if result.reached else "the target is missed; "
-    title = f"{result.task.name}: {missed}the part ends {_off(result, result.task.target)}"
-    return _draw(result, title, path)
+    task = result.task
+    ends = f"the part ends {_off(result, task.target)}"
+    return _draw(result, f"{task.name}: {ends if result.reached else f'target missed, {ends}'}", path)
 
 
 def draw_plan(result: Planned, path: Path) -> Path:

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from sweeps import PLATE
 
 from active_surface.cli.program import main
 from active_surface.steering import Settings, Task, aim
@@ -21,24 +20,8 @@ from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
 from particle import ConstantFriction, Micropart, Outcome, polynomial_surface, simulate
 
-CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
 TARGET = (-2e-5, 2e-5)
 QUICK = {"scatter": 20, "tolerance": 1e-6}
-
-
-def case_of(folder, text=CASE):
-    (folder / "base.toml").write_text(text)
-    return read_case(folder / "base.toml")
-
-
-@pytest.fixture(scope="module")
-def case(tmp_path_factory):
-    return case_of(tmp_path_factory.mktemp("case"))
-
-
-@pytest.fixture(scope="module")
-def surface(case):
-    return build_surface(case)
 
 
 @pytest.mark.slow
@@ -209,27 +192,23 @@ def test_paths_of_a_case_are_those_of_a_run(case, surface):
 
 @pytest.mark.slow
 @pytest.mark.compiled
-def test_the_command_says_what_was_found(tmp_path):
-    case_of(tmp_path)
-    arguments = ["aim", str(tmp_path / "base.toml"), "--target", "-20,20", "-o", str(tmp_path / "out")]
+def test_the_command_says_what_was_found(folder):
+    arguments = ["aim", str(folder / "base.toml"), "--target", "-20,20", "-o", str(folder / "out")]
     done = CliRunner().invoke(main, [*arguments, "--json"])
     told = json.loads(done.stdout)
     assert done.exit_code == 0 and told["reached"] and set(told["legs"][0]["drives"]) == {"0", "1"}
     assert told["scatter"]["count"] == 100 and told["scatter"]["median"] <= told["scatter"]["nine_in_ten"]
-    before = [(tmp_path / "out" / f"base_{name}").read_bytes() for name in ("aimed.toml", "aim.png")]
+    before = [(folder / "out" / f"base_{name}").read_bytes() for name in ("aimed.toml", "aim.png")]
     done = CliRunner().invoke(main, [*arguments, "--threads", "1"])
     assert done.exit_code == 2 and "which has base_aimed.toml and base_aim.png: --overwrite replaces" in done.output
     done = CliRunner().invoke(main, [*arguments, "--overwrite"])
-    assert [(tmp_path / "out" / f"base_{name}").read_bytes() for name in ("aimed.toml", "aim.png")] == before
+    assert [(folder / "out" / f"base_{name}").read_bytes() for name in ("aimed.toml", "aim.png")] == before
     assert done.exit_code == 0 and "within the 0.5 um tolerance" in done.stdout
     assert [line.split()[0] for line in done.stdout.splitlines()].count("actuator") == 2
 
 
 @pytest.mark.parametrize("target", ["-90", "400,0", "0,400 kg"])
-def test_a_target_that_makes_no_sense_leaves_nothing_behind(tmp_path, target):
-    case_of(tmp_path)
-    done = CliRunner().invoke(
-        main, ["aim", str(tmp_path / "base.toml"), "--target", target, "-o", str(tmp_path / "out")]
-    )
+def test_a_target_that_makes_no_sense_leaves_nothing_behind(folder, target):
+    done = CliRunner().invoke(main, ["aim", str(folder / "base.toml"), "--target", target, "-o", str(folder / "out")])
     assert done.exit_code == 2 and "target must" in done.output and len(done.output.splitlines()) == 2
-    assert not (tmp_path / "out").exists()
+    assert not (folder / "out").exists()

@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from sweeps import PLATE
+from sweeps import read_text
 
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, Task, aim, plan
@@ -17,24 +17,15 @@ from active_surface.steering.paths import Paths
 from active_surface.steering.report import lines, plan_figures, plan_lines, scatter_line
 from active_surface.steering.robustness import Disturbance, Scatter
 from active_surface.steering.search import Trials
-from coupling import build_surface, read_case
+from coupling import build_surface
 from particle import Outcome
 
 TARGET = (-2e-5, 2e-5)
 pytestmark = pytest.mark.compiled
 
 
-def case_of(folder, *changes):
-    text = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    (folder / "base.toml").write_text(text)
-    return read_case(folder / "base.toml")
-
-
-def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path):
-    case = case_of(tmp_path, ('"20 ms"', '"2.6 ms"'), ("40 nN", "1 nN"))
+def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path, text):
+    case = read_text(tmp_path, text.replace('"20 ms"', '"2.6 ms"').replace("40 nN", "1 nN"))
     surface = build_surface(case)
     fixed = {"frequency": (400, 400), "stroke": (5e-5, 5e-5), "cycles": (1, 1), "scatter": 1}
     end = aim_over(surface, Task(case, TARGET, Settings(**fixed))).trajectory.position[-1]
@@ -45,8 +36,8 @@ def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path):
     )
 
 
-def test_a_start_at_the_rim_is_disturbed_on_the_plate_only(tmp_path):
-    case = case_of(tmp_path, ('["0 um", "40 um"]', '["0 um", "299.8 um"]'))
+def test_a_start_at_the_rim_is_disturbed_on_the_plate_only(tmp_path, text):
+    case = read_text(tmp_path, text.replace('["0 um", "40 um"]', '["0 um", "299.8 um"]'))
     surface = build_surface(case)
     shifts = [(0.0, 1e-6), (0.0, -1e-6), (1e-7, 0.0), (5e-7, 9e-7)]
     paths = Paths(case, surface).of([(case.actuators, Disturbance(shift=shift)) for shift in shifts])
@@ -57,19 +48,18 @@ def test_a_start_at_the_rim_is_disturbed_on_the_plate_only(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkeypatch):
-    case = case_of(tmp_path)
+def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(case, folder, monkeypatch):
 
     def stop(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("active_surface.steering.aiming._scatter", stop)
-    aimed = aim(Task(case, TARGET), tmp_path / "out")
+    aimed = aim(Task(case, TARGET), folder / "out")
     assert aimed.interrupted and aimed.reached and aimed.scatter is None
     assert [file.name for file in aimed.files] == ["base_aimed.toml"]
-    assert [file.name for file in (tmp_path / "out").iterdir()] == ["base_aimed.toml"]
-    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\ntolerance = "5 um"\n')
-    arguments = [str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out"), "--overwrite"]
+    assert [file.name for file in (folder / "out").iterdir()] == ["base_aimed.toml"]
+    (folder / "aim.toml").write_text('[aim]\ncase = "base.toml"\ntolerance = "5 um"\n')
+    arguments = [str(folder / "aim.toml"), "-o", str(folder / "out"), "--overwrite"]
     done = CliRunner().invoke(main, ["aim", *arguments, "--target", "-20,20"])
     assert done.exit_code == 130 and "not looked for, after Ctrl-C" in done.stdout
     done = CliRunner().invoke(main, ["plan", *arguments, "--json", "--through", "-20,20", "0,20"])
@@ -77,8 +67,7 @@ def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkey
     assert done.exit_code == 130 and len(told["legs"]) == 2 and told["scatter"] is None
 
 
-def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
-    case = case_of(tmp_path)
+def test_a_second_interruption_does_not_undo_the_first(case, surface, tmp_path, monkeypatch):
     written = []
 
     def write(*given):
@@ -92,35 +81,33 @@ def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
     assert threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
     monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
-    aimed = aim_over(build_surface(case), Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
+    aimed = aim_over(surface, Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
     assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
 
 
 @pytest.mark.parametrize("over", [aim_over, plan_over])
-def test_an_interruption_while_the_file_is_written_is_heard_after_it(tmp_path, monkeypatch, over):
+def test_an_interruption_while_the_file_is_written_is_heard_after_it(case, surface, tmp_path, monkeypatch, over):
     def write(case, file, said):
         signal.raise_signal(signal.SIGINT)
         return file
 
     monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
-    case, settings = case_of(tmp_path), Settings(paths=2, scatter=5)
+    settings = Settings(paths=2, scatter=5)
     task = Task(case, TARGET, settings) if over is aim_over else Route(case, (TARGET,), settings)
-    found = over(build_surface(case), task, file=tmp_path / "a.toml")
+    found = over(surface, task, file=tmp_path / "a.toml")
     assert found.interrupted and found.files == (tmp_path / "a.toml",) and found.scatter is None
 
 
-def test_a_folder_in_place_of_a_result_is_refused_before_the_search(tmp_path):
+def test_a_folder_in_place_of_a_result_is_refused_before_the_search(case, tmp_path):
     (tmp_path / "base_aim.png").mkdir()
     with pytest.raises(ValueError, match="free for base_aim.png; got .* where that is a folder"):
-        aim(Task(case_of(tmp_path), TARGET), tmp_path, overwrite=True)
+        aim(Task(case, TARGET), tmp_path, overwrite=True)
 
 
 LIFTED = {"stroke": (3e-4, 4e-4), "frequency": (1900.0, 2000.0), "paths": 1, "scatter": 5}
 
 
-def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
-    case = case_of(tmp_path)
-    surface = build_surface(case)
+def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(case, surface):
     planned = plan_over(surface, Route(case, (TARGET, (0.0, 0.0)), Settings(**LIFTED)))
     assert planned.trajectory.time[-1] < planned.case.run.duration
     assert not planned.arrivals and not planned.distances and not planned.complete and planned.scatter.lost == 5
@@ -128,12 +115,12 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
     assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
 
 
-def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, monkeypatch):
+def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(case, surface, tmp_path, monkeypatch):
     """The second leg does not settle: its drives are in the case all the same."""
-    case, settings, rests = case_of(tmp_path), Settings(paths=40, scatter=3), iter([True, False])
+    settings, rests = Settings(paths=40, scatter=3), iter([True, False])
     monkeypatch.setattr("active_surface.steering.aiming.settled", lambda path: next(rests))
     way = (TARGET, (6e-5, 5e-5))
-    planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
+    planned = plan_over(surface, Route(case, way, settings), file=tmp_path / "out" / "p.toml")
     assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 1: ")
     assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
     comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
@@ -147,8 +134,7 @@ def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, 
 
 
 @pytest.mark.slow
-def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(tmp_path):
-    case = case_of(tmp_path)
+def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(case, tmp_path):
     planned = plan(Route(case, (TARGET,), Settings(**LIFTED)), tmp_path / "out")
     assert planned.scatter.as_dict() == {"count": 5, "median": None, "nine_in_ten": None, "worst": None} | {
         "cvar_nine_in_ten": None,
@@ -175,10 +161,9 @@ def test_a_share_of_the_parts_is_within_a_distance_only_where_that_many_are(off,
 
 
 @pytest.mark.slow
-def test_a_plan_says_which_way_points_it_missed(tmp_path):
-    case_of(tmp_path)
-    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
-    arguments = ["plan", str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out"), "--through", "-90,120", "90,120"]
+def test_a_plan_says_which_way_points_it_missed(folder):
+    (folder / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
+    arguments = ["plan", str(folder / "aim.toml"), "-o", str(folder / "out"), "--through", "-90,120", "90,120"]
     done = CliRunner().invoke(main, arguments)
     assert done.exit_code == 1 and "not within the 0.5 um tolerance" in done.stdout
     assert "0 of 2 way-points within 0.5 um" in done.stdout
@@ -186,8 +171,7 @@ def test_a_plan_says_which_way_points_it_missed(tmp_path):
     assert [leg["reached"] for leg in told["legs"]] == [False, False] and not told["complete"]
 
 
-def test_bounds_that_leave_no_time_for_a_cycle_are_refused(tmp_path):
-    case = case_of(tmp_path)
+def test_bounds_that_leave_no_time_for_a_cycle_are_refused(case):
     with pytest.raises(
         ValueError, match=r"^frequency must leave time for a cycle .* is 25 ms, and the run ends at 20 ms$"
     ):
@@ -198,16 +182,15 @@ def test_bounds_that_leave_no_time_for_a_cycle_are_refused(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_case_file_may_follow_the_way_points(tmp_path):
-    case_of(tmp_path)
-    (tmp_path / "1.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
-    arguments = ["plan", "--through", "-90,120", "90,120", str(tmp_path / "1.toml"), "-o", str(tmp_path / "out")]
+def test_a_case_file_may_follow_the_way_points(folder):
+    (folder / "1.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
+    arguments = ["plan", "--through", "-90,120", "90,120", str(folder / "1.toml"), "-o", str(folder / "out")]
     done = CliRunner().invoke(main, [*arguments, "--json"])
     assert done.exit_code == 1 and len(json.loads(done.stdout)["legs"]) == 2
 
 
-def test_a_robust_search_by_few_paths_ends_with_them(tmp_path, monkeypatch):
-    case, asked, of, paths = case_of(tmp_path), [], Trials.of, 2
+def test_a_robust_search_by_few_paths_ends_with_them(case, surface, monkeypatch):
+    asked, of, paths = [], Trials.of, 2
 
     def counted(objective, values):
         asked.append(len(values))
@@ -215,15 +198,14 @@ def test_a_robust_search_by_few_paths_ends_with_them(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Trials, "of", counted)
     task = Task(case, TARGET, Settings(quantile=0.9, paths=paths, scatter=1))
-    found = aim_over(build_surface(case), task)
+    found = aim_over(surface, task)
     assert np.isfinite(found.distance) and found.paths <= paths + SAMPLES and len(asked) < 20
 
 
 @pytest.mark.slow
-def test_the_option_robust_is_the_quantile(tmp_path):
-    case_of(tmp_path)
-    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 200\nscatter = 2\n')
-    arguments = ["aim", str(tmp_path / "aim.toml"), "--target=-20,20", "--json", "-o", str(tmp_path / "out")]
+def test_the_option_robust_is_the_quantile(folder):
+    (folder / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 200\nscatter = 2\n')
+    arguments = ["aim", str(folder / "aim.toml"), "--target=-20,20", "--json", "-o", str(folder / "out")]
     plain = json.loads(CliRunner().invoke(main, arguments).stdout)
     robust = json.loads(CliRunner().invoke(main, [*arguments, "--robust", "0.9", "--overwrite"]).stdout)
     assert robust["paths"] <= 200 + SAMPLES and robust["legs"] != plain["legs"]

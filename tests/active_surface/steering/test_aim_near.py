@@ -4,22 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from sweeps import PLATE, read_text
 
 from active_surface.steering import Settings, Task
 from active_surface.steering.aiming import aim_over
 from active_surface.steering.knobs import Knob, Knobs, Stop, own_drives
 from active_surface.steering.report import hints
 from active_surface.steering.search import _smallest_step
-from coupling import build_surface, run_case
+from coupling import run_case
 from coupling.case import find_field
-
-CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
-
-
-@pytest.fixture(scope="module")
-def case(tmp_path_factory):
-    return read_text(tmp_path_factory.mktemp("case"), CASE)
 
 
 @pytest.fixture(scope="module")
@@ -38,23 +30,23 @@ def test_endless_drives_end_within_the_run(case):
 
 
 @pytest.mark.compiled
-def test_a_target_where_the_case_ends_by_itself_takes_one_path(case, own):
-    aimed = aim_over(build_surface(case), Task(case, own[1], Settings(scatter=2)))
+def test_a_target_where_the_case_ends_by_itself_takes_one_path(case, surface, own):
+    aimed = aim_over(surface, Task(case, own[1], Settings(scatter=2)))
     assert aimed.reached and aimed.distance == 0.0 and aimed.paths == 1
     assert aimed.case.actuators == own_drives(case)
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("shift", [(3e-6, 2e-6), (-3e-6, 4e-6)])
-def test_an_aim_never_ends_farther_off_than_the_case_itself(case, own, shift):
+def test_an_aim_never_ends_farther_off_than_the_case_itself(case, surface, own, shift):
     target = own[1][0] + shift[0], own[1][1] + shift[1]
-    few = aim_over(build_surface(case), Task(case, target, Settings(scatter=2, paths=3)))
+    few = aim_over(surface, Task(case, target, Settings(scatter=2, paths=3)))
     assert few.distance <= math.hypot(*shift) + 1e-12 and few.paths <= 3
 
 
 @pytest.mark.compiled
-def test_bounds_that_leave_out_the_own_drives_are_kept(case, own):
-    aimed = aim_over(build_surface(case), Task(case, own[1], Settings(scatter=2, cycles=(1, 2), paths=60)))
+def test_bounds_that_leave_out_the_own_drives_are_kept(case, surface, own):
+    aimed = aim_over(surface, Task(case, own[1], Settings(scatter=2, cycles=(1, 2), paths=60)))
     assert max(actuator.cycles for actuator in aimed.legs[0].actuators) <= 2
 
 

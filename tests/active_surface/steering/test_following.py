@@ -4,7 +4,6 @@ import math
 
 import pytest
 from click.testing import CliRunner
-from sweeps import PLATE
 
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, follow_plan, plan
@@ -12,7 +11,6 @@ from active_surface.steering.following import Progress, next_leg, progress_of
 from active_surface.steering.read import read_measured
 from coupling import read_case, run_case
 
-CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
 THROUGH = ((-2e-5, 2e-5), (-3e-5, 5e-5))
 SETTINGS = Settings(tolerance=1e-6, scatter=1, paths=2000)
 BELOW = {
@@ -41,12 +39,6 @@ class Device:
         return self.place
 
 
-@pytest.fixture
-def case(tmp_path):
-    (tmp_path / "base.toml").write_text(CASE)
-    return read_case(tmp_path / "base.toml")
-
-
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_the_closed_loop_meets_way_points_that_the_open_one_misses_with_a_device_of_other_friction(case):
@@ -66,11 +58,11 @@ def test_the_closed_loop_meets_way_points_that_the_open_one_misses_with_a_device
 
 @pytest.mark.slow
 @pytest.mark.compiled
-def test_the_command_aims_the_next_leg_from_where_the_part_was_measured(case, tmp_path):
-    file, out = tmp_path / "measured.csv", tmp_path / "out"
+def test_the_command_aims_the_next_leg_from_where_the_part_was_measured(case, folder):
+    file, out = folder / "measured.csv", folder / "out"
     file.write_text("x [um], y [um]\n")
-    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\ntolerance = "1 um"\nscatter = 2\npaths = 2000\n')
-    words = ["plan", str(tmp_path / "aim.toml"), "--through", "-20,20", "-30,50", "--measured", str(file)]
+    (folder / "aim.toml").write_text('[aim]\ncase = "base.toml"\ntolerance = "1 um"\nscatter = 2\npaths = 2000\n')
+    words = ["plan", str(folder / "aim.toml"), "--through", "-20,20", "-30,50", "--measured", str(file)]
     done = CliRunner().invoke(main, [*words, "-o", str(out)])
     assert done.exit_code == 0, done.output
     assert read_case(out / "aim_leg_0_aimed.toml").part.position == case.part.position

@@ -3,21 +3,14 @@
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
-from sweeps import PLATE, read_text
 
 from active_surface.steering import Settings, Task, objective, read_task
 from active_surface.steering.robustness import REPORTED, conditional_value_at_risk, deviations, disturbed, draws
 from coupling import run_case
 from coupling.case import CaseError
 
-CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
 TARGET = (-2e-5, 2e-5)
 SIZES = {"part.mass": "3 %", "actuators.*.frequency": "2 Hz", "friction.limit": "2 nN", "actuators.0.delay": "10 us"}
-
-
-@pytest.fixture(scope="module")
-def case(tmp_path_factory):
-    return read_text(tmp_path_factory.mktemp("case"), CASE)
 
 
 def test_each_field_deviates_by_its_own_size(case):
@@ -36,15 +29,14 @@ def test_each_field_deviates_by_its_own_size(case):
     assert all(one.actuators[1].delay == case.actuators[1].delay for one in cases)
 
 
-def test_what_cannot_deviate_is_refused_with_all_else(tmp_path):
-    (tmp_path / "base.toml").write_text(CASE)
-    (tmp_path / "aim.toml").write_text(
+def test_what_cannot_deviate_is_refused_with_all_else(folder):
+    (folder / "aim.toml").write_text(
         '[aim]\ncase = "base.toml"\ntarget = ["-20 um", "20 um"]\n[aim.disturbances]\n'
         'part.mas = "1 %"\n"plate.thickness" = "1 %"\n"actuators.*.stroke" = "2 Hz"\n'
         '"part.position" = "1 %"\n"friction.limit" = "120 %"\n"actuators.*.cycle" = "1 %"\n'
     )
     with pytest.raises(CaseError) as caught:
-        read_task(tmp_path / "aim.toml")
+        read_task(folder / "aim.toml")
     text = str(caught.value)
     for message in (
         "part.mas must be a field of the case; part has no mas; did you mean mass?",
@@ -57,12 +49,11 @@ def test_what_cannot_deviate_is_refused_with_all_else(tmp_path):
         assert message in text, text
 
 
-def test_nested_tables_and_paths_are_the_same(tmp_path):
-    (tmp_path / "base.toml").write_text(CASE)
-    (tmp_path / "aim.toml").write_text(
+def test_nested_tables_and_paths_are_the_same(folder):
+    (folder / "aim.toml").write_text(
         '[aim]\ncase = "base.toml"\ntarget = ["-20 um", "20 um"]\n[aim.disturbances]\npart.mass = "2 %"\n'
     )
-    assert read_task(tmp_path / "aim.toml").settings.disturbances == {"part.mass": "2 %"}
+    assert read_task(folder / "aim.toml").settings.disturbances == {"part.mass": "2 %"}
 
 
 def test_quantile_and_cvar_exclude_each_other(case):
