@@ -23,8 +23,7 @@ from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
 from active_surface.steering.task import Route, Task
 from coupling import ProgressCallback, no_progress, run_case, warnings
-from coupling.case import length_text, write_case
-from coupling.report import joined
+from coupling.case import write_case
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
 
 Kind = TypeVar("Kind", Aimed, Planned)
@@ -137,7 +136,7 @@ def aim_over(
         return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
     approach = Approach(surface, task, threads, count)
-    return _found(approach.run, result, _aim_comment, file, surface, threads)
+    return _found(approach.run, result, file, surface, threads)
 
 
 def plan_over(
@@ -149,7 +148,7 @@ def plan_over(
 ) -> Planned:
     """The same as `plan` over an existing surface; writes a case file at most, before it looks at the scatter."""
     work = _Plan(surface, route, threads, tell)
-    return _found(work.run, lambda: work.planned, _plan_comment, file, surface, threads)
+    return _found(work.run, lambda: work.planned, file, surface, threads)
 
 
 class _Plan:
@@ -211,25 +210,6 @@ class _Plan:
         )
 
 
-def _aim_comment(result: Aimed) -> str:
-    """The head of a case file: how near the drives bring the part to the target."""
-    x, y = map(length_text, result.task.target)
-    away = length_text(result.distance)
-    if result.reached:
-        return f"The drives bring the part to within {away} of ({x}, {y})."
-    return f"The target ({x}, {y}) is missed: the part ends {away} from it."
-
-
-def _plan_comment(result: Planned) -> str:
-    """The head of a case file: which way-points are missed, how near the part comes to each, and why no farther."""
-    missed = [str(number) for number, reached in enumerate(result.reached) if not reached]
-    legs = zip(result.route.through, result.distances, strict=False)
-    places = [f"{length_text(off)} of ({length_text(x)}, {length_text(y)})" for (x, y), off in legs]
-    sentences = [f"The drives miss way-point{'s' * (len(missed) > 1)} {joined(missed)}."] if missed else []
-    sentences += [f"The drives carry the part to within {', '.join(places)}."] if places else []
-    return "\n".join([*sentences, result.failure] if result.failure else sentences)
-
-
 def _tell_leg(tell: ProgressCallback, leg: int, legs: int, done: int, of: int) -> None:
     tell(leg * of + done, legs * of)
 
@@ -255,7 +235,6 @@ def _files(task: Task | Route, output: str | Path | None, case: str, picture: st
 def _found(
     run: Callable[[], object],
     best: Callable[[], Kind | None],
-    comment: Callable[[Kind], str],
     file: Path | None,
     surface: SurfaceMotion,
     threads: int | None,
@@ -275,7 +254,7 @@ def _found(
                 raise KeyboardInterrupt
             result = replace(result, interrupted=interrupted)
             if file is not None:
-                result = replace(result, files=(write_case(result.case, file, comment(result)),))
+                result = replace(result, files=(write_case(result.case, file, result.head),))
         return result if interrupted else replace(result, scatter=_scatter(result, surface, threads))
     except KeyboardInterrupt:  # the result so far stays
         if result is None:

@@ -105,7 +105,7 @@ def _endless(actuator: ActuatorCase, factor: float) -> ActuatorCase:
 class Objective:
     """The distance from a task's target as a function of its knobs: what `aim` minimises.
 
-    Call it with settings (n, knobs) for distances (n,) in m. A part that has not come to rest for good counts as
+    Call it with settings (n, knobs) for distances (n,) in m. A part that has not come to a final rest counts as
     farther off than it is, and one that is lost as farther than any other. Equal settings give equal distances.
     """
 

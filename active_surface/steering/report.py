@@ -153,7 +153,7 @@ def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
 
 
 def _paths(result: SteeringResult) -> str:
-    return f"{result.paths} paths{', stopped by Ctrl-C' * result.interrupted}"
+    return f"{result.paths} path{'s' * (result.paths != 1)}{', stopped by Ctrl-C' * result.interrupted}"
 
 
 def _outcome(result: SteeringResult) -> tuple[str, str]:

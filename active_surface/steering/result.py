@@ -13,7 +13,8 @@ from active_surface.steering.paths import settled
 from active_surface.steering.robustness import Scatter
 from active_surface.steering.settings import Settings
 from active_surface.steering.task import Place, Route, Task
-from coupling.case import Case
+from coupling.case import Case, length_text
+from coupling.report import joined
 from particle import Trajectory
 
 
@@ -68,8 +69,17 @@ class Aimed(_Result):
 
     @property
     def reached(self) -> bool:
-        """Whether the part comes to rest for good within the tolerance of the target."""
+        """Whether the part comes to a final rest within the tolerance of the target."""
         return self.distance <= self.task.settings.tolerance and settled(self.trajectory)
+
+    @property
+    def head(self) -> str:
+        """The head of the case file: how near the drives bring the part to the target, or that they miss it."""
+        x, y = map(length_text, self.task.target)
+        away = length_text(self.distance)
+        if self.reached:
+            return f"The drives bring the part to within {away} of ({x}, {y})."
+        return f"The target ({x}, {y}) is missed: the part ends {away} from it."
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +89,7 @@ class Planned(_Result):
     Parameters
     ----------
     arrivals : tuple of float
-        When the part comes to rest for good at each way-point, or beside it, s.
+        When the part comes to a final rest at each way-point, or beside it, s.
     tried : int
         Number of way-points with drives, including one on whose way the path failed.
     failure : str
@@ -115,6 +125,16 @@ class Planned(_Result):
     def complete(self) -> bool:
         """Whether every way-point was reached, within the tolerance."""
         return len(self.arrivals) == len(self.route.through) and all(self.reached)
+
+    @property
+    def head(self) -> str:
+        """The head of the case file: which way-points are missed, how near the part comes to each, why no farther."""
+        missed = [str(number) for number, reached in enumerate(self.reached) if not reached]
+        legs = zip(self.route.through, self.distances, strict=False)
+        places = [f"{length_text(off)} of ({length_text(x)}, {length_text(y)})" for (x, y), off in legs]
+        sentences = [f"The drives miss way-point{'s' * (len(missed) > 1)} {joined(missed)}."] if missed else []
+        sentences += [f"The drives carry the part to within {', '.join(places)}."] if places else []
+        return "\n".join([*sentences, self.failure] if self.failure else sentences)
 
 
 SteeringResult = Aimed | Planned
