@@ -233,12 +233,12 @@ class Scatter:
 
     def as_dict(self) -> dict[str, Any]:
         """Its figures by name, in SI units; None where too many were lost."""
-        shares = {"median": 0.5, "nine_in_ten": 0.9, "worst": 1.0}
-        quantiles = {name: self.quantile(share) for name, share in shares.items()}
-        within = {name: distance if math.isfinite(distance) else None for name, distance in quantiles.items()}
-        cvar = self.cvar(0.9)
-        tail = {"cvar_nine_in_ten": cvar if math.isfinite(cvar) else None}
-        return {"count": len(self.distance), **within, **tail, "lost": self.lost}
+        quantiles = {
+            name: self.quantile(share) for name, share in (("median", 0.5), ("nine_in_ten", 0.9), ("worst", 1.0))
+        }
+        figures = quantiles | {"cvar_nine_in_ten": self.cvar(0.9)}
+        within = {name: distance if math.isfinite(distance) else None for name, distance in figures.items()}
+        return {"count": len(self.distance), **within, "lost": self.lost}
 
 
 def conditional_value_at_risk(distances: FloatArray, share: float) -> FloatArray:
