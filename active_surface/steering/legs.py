@@ -77,7 +77,7 @@ class Approach:
         self.paths = 0  # followed, without those of the current search
 
     def run(self) -> None:
-        """Search."""
+        """Search around the case's own drives, then leg by leg, then over the whole duration, until one is enough."""
         task, max_paths, robust = self._task, self._task.settings.max_paths, self._task.settings.is_robust
         if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
             self._search(task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
