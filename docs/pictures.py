@@ -5,6 +5,7 @@ from runpy import run_path
 from shutil import copy
 from tempfile import TemporaryDirectory
 
+import nbformat
 import numpy as np
 from animation_pictures import draw_animation
 from contact_pictures import draw_contact
@@ -15,10 +16,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from motion_pictures import draw_motion_error
+from nbclient import NotebookClient
 from page_pictures import draw_pages
 from paraview_pictures import draw_paraview
 from tolerance_pictures import draw_tolerance
 
+from active_surface.cli.program import main
 from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.studies import read_study, run_study
 from active_surface.views import animate
@@ -49,6 +52,20 @@ def draw_first() -> None:
         case.write_text((ROOT / "docs/quick-start.md").read_text().split("```toml\n")[1].split("```")[0])
         run_case(read_case(case), output=folder)
         copy(Path(folder) / "first.png", ROOT / "docs")
+
+
+def draw_tutorial() -> None:
+    """The pictures of the tutorial, and what the cells of its notebook print and draw."""
+    device = (ROOT / "examples/device.toml").read_text()
+    with TemporaryDirectory() as folder:
+        case = Path(folder) / "column.toml"
+        case.write_text(device.replace('"5 um"', '"5 * (column == 0) um"').replace("2 kHz", "4 kHz"))
+        run_case(read_case(case)).plot().savefig(ROOT / "docs/tutorial.png")
+        main(["feasibility", str(case), "--output", folder], standalone_mode=False)
+        copy(Path(folder) / "column.feasibility.png", ROOT / "docs/tutorial_feasibility.png")
+    notebook = nbformat.read(ROOT / "docs/tutorial.ipynb", 4)
+    NotebookClient(notebook, timeout=600).execute()
+    nbformat.write(notebook, ROOT / "docs/tutorial.ipynb")
 
 
 def draw_sweep() -> None:
@@ -186,6 +203,7 @@ if __name__ == "__main__":
     draw_runs()
     draw_animation()
     draw_first()
+    draw_tutorial()
     draw_sweep()
     draw_aims()
     draw_plates()

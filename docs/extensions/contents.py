@@ -18,7 +18,7 @@ REFERENCE = Path(__file__).parent / "reference"  # a file of directives for each
 PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "identification", "paper"]
 CONTENTS = {  # the pages below a page, by caption
     "index": {
-        "First steps": ["quick-start", "gallery/index"],
+        "First steps": ["quick-start", "tutorial", "gallery/index"],
         "How to": [
             *(
                 "howto/own-mesh",

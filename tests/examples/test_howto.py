@@ -13,7 +13,8 @@ from coupling import read_case
 
 ROOT = Path(__file__).parents[2]
 QUICK_START = ROOT / "docs/quick-start.md"
-PAGES = [QUICK_START, *sorted((ROOT / "docs/howto").glob("*.md"))]
+TUTORIAL = ROOT / "docs/tutorial.md"
+PAGES = [QUICK_START, TUTORIAL, *sorted((ROOT / "docs/howto").glob("*.md"))]
 
 
 def blocks(page, language):
@@ -82,3 +83,51 @@ def test_the_table_of_own_friction_is_that_of_its_case(folder):
     assert law.loads == pytest.approx([1e-6 * float(load) for load, _ in rows])
     assert law.limits == pytest.approx([1e-9 * float(limit) for _, limit in rows])
     assert inline["loads"] == [f"{load} uN" for load, _ in rows]
+
+
+PRINTED = re.compile(r"^(outcome|end|distance|contact|margins| {12}contact|thresholds) .*$", flags=re.MULTILINE)
+
+
+def tutorial_cases():
+    """The cases of the tutorial by the file's name, as a reader changes the first."""
+    device, column, _, corner = blocks(TUTORIAL, "toml")
+    cases = {"device": device}
+    for name, change in (("column", column), ("corner", corner)):
+        lines = {line.split(" = ")[0]: line for line in change.splitlines()}
+        new = re.sub(r"^(stroke|frequency) = .*\n", "", device, flags=re.MULTILINE)
+        cases[name] = new.replace("[lattice]", "\n".join(["[lattice]", *lines.values()]))
+    cases["corner"] = cases["corner"].replace('"15 ms"', '"60 ms"')
+    return cases
+
+
+def test_the_tutorial_begins_with_an_example():
+    assert tomllib.loads(tutorial_cases()["device"]) == tomllib.loads((ROOT / "examples/device.toml").read_text())
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_the_tutorial_prints_what_its_commands_print(folder):
+    page = TUTORIAL.read_text()
+    for name, case in tutorial_cases().items():
+        (folder / f"{name}.toml").write_text(case)
+        printed = CliRunner().invoke(main, ["run", f"{name}.toml"]).output
+        assert "warning" not in printed or name == "corner"
+        shown = [line[0] for line in PRINTED.finditer(printed)]
+        if name == "column":  # its margins are left out
+            shown = shown[:4]
+        elif name == "corner":
+            assert [line for line in shown if line.startswith("end")] == [
+                "end         (-38.8322, -43.9433) um at 60.0000 ms"
+            ]
+            shown = []
+        assert [line for line in shown if line not in page] == []
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_the_notebook_runs():
+    nbclient = pytest.importorskip("nbclient")
+    notebook = pytest.importorskip("nbformat").read(ROOT / "docs/tutorial.ipynb", 4)
+    shown = [[output.get("text") for output in cell.get("outputs", [])] for cell in notebook.cells]
+    nbclient.NotebookClient(notebook, timeout=600).execute()
+    assert [[output.get("text") for output in cell.get("outputs", [])] for cell in notebook.cells] == shown
