@@ -1,9 +1,7 @@
-from .estimate import Estimate as Estimate
-from .fit import TrackFit as TrackFit
+from .estimate import Estimate as Estimate, TrackFit as TrackFit
 from .identify import identify as identify
 from .result import Identified as Identified
 from .track import Track as Track, read_track as read_track
 
 # Not public: for the packages that build on this one.
-from .checks import checked as checked
 from .result import case_names as case_names, check_free as check_free

@@ -1,4 +1,4 @@
-"""Estimate: one field that was found, with its interval."""
+"""What is found: an Estimate of each field with its interval, a TrackFit of each track with the closest path."""
 
 from __future__ import annotations
 
@@ -7,9 +7,15 @@ from typing import Final
 
 import numpy as np
 
+from active_surface.arrays import FloatArray
+from active_surface.identification.track import Track
 from common import quantity_text
+from coupling.case import Case
+from particle import Trajectory
 
 MOST_DIGITS: Final = 9
+TELLING: Final = 3.0  # standard deviations of the correlation of successive residuals that are independent
+EARLY: Final = 1e-9  # of the track's end
 
 
 @dataclass(frozen=True)
@@ -38,17 +44,71 @@ class Estimate:
     @property
     def text(self) -> str:
         """The value with its interval, in words."""
-        low, high = (self._written(value) for value in (self.low, self.high))
+        value, low, high = (self._written(one) for one in (self.value, self.low, self.high))
         if not self.determined:
             return f"not determined: any value from {low} to {high} describes the track as well"
         if self.open_low or self.open_high:
-            return f"{self._written(self.value)}, at {f'most {high}' if self.open_low else f'least {low}'} (95 %)"
-        return f"{self._written(self.value)}, from {low} to {high} (95 %)"
+            return f"{value}, at {f'most {high}' if self.open_low else f'least {low}'} (95 %)"
+        return f"{value}, from {low} to {high} (95 %)"
 
     def _written(self, value: float) -> str:
         """A value with as many digits as tell the ends apart."""
-        size, width = abs(self.value), self.high - self.low
-        digits = (
-            MOST_DIGITS if not width else int(np.clip(np.ceil(np.log10(max(size / width, 1.0))) + 2, 3, MOST_DIGITS))
-        )
+        width = max(self.high - self.low, 1e-300)
+        digits = int(np.clip(np.ceil(np.log10(max(abs(self.value) / width, 1.0))) + 2, 3, MOST_DIGITS))
         return f"{value:.{digits}g}" if self.unit == "1" else quantity_text(value, self.unit, digits)
+
+
+@dataclass(frozen=True, eq=False)
+class TrackFit:
+    """One track, and the case whose path it is closest to.
+
+    Parameters
+    ----------
+    name : str
+        Of the case as it was, with a number where several tracks have one name.
+    case : Case
+        The case with the fields that were found.
+    track : Track
+        What it was fitted to.
+    trajectory : Trajectory
+        Its path, until the track ends.
+    """
+
+    name: str
+    case: Case
+    track: Track
+    trajectory: Trajectory
+
+    @property
+    def away(self) -> FloatArray:
+        """Path minus track (k, 2) [m]; nan where a place was not measured."""
+        return np.asarray(self.trajectory.at(self.track.time).position - self.track.position)
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Path minus track (m,) [m]."""
+        return self.away[np.isfinite(self.track.position)]
+
+    @property
+    def residual(self) -> float:
+        """Root mean square of the residuals [m]."""
+        return float(np.sqrt(np.mean(self.residuals**2)))
+
+    @property
+    def succession(self) -> float:
+        """The correlation of each residual along x or y with the next; near 0 where they are noise."""
+        away = np.nan_to_num(self.away)
+        total = float((away**2).sum())
+        return float((away[1:] * away[:-1]).sum() / total) if total else 0.0
+
+    def warnings(self) -> list[str]:
+        """What limits the trust in it."""
+        told = []
+        if self.succession > TELLING / np.sqrt(len(self.residuals)):
+            told.append(
+                f"residuals follow each other (correlation {self.succession:.2f}): the model leaves more than noise, "
+                "and intervals are too narrow"
+            )
+        if self.trajectory.time[-1] < self.track.time[-1] * (1 - EARLY) and self.trajectory.at_rest_since is None:
+            told.append(f"the path ends before the track: {self.trajectory.sentence}")
+        return told

@@ -6,21 +6,18 @@ parameters -> surfaces -> search -> profiles -> cases, paths, correlation
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from active_surface.identification.checks import checked
-from active_surface.identification.estimate import Estimate
-from active_surface.identification.fit import TrackFit
-from active_surface.identification.parameters import FREE, case_with
+from active_surface.identification.estimate import Estimate, TrackFit
+from active_surface.identification.parameters import FREE, case_with, check, parameters_of
 from active_surface.identification.profiles import profiled, spread_of
 from active_surface.identification.result import Identified, case_names, names_of
 from active_surface.identification.search import search
 from active_surface.identification.track import Track
 from active_surface.identification.trials import Loss, Recording, Trials
-from active_surface.parameter import Parameter
 from coupling import Progress, build_friction, build_surface, follow_part, silent
 from coupling.case import Case, plain_case
 from particle import SurfaceMotion, interruptible
@@ -78,7 +75,10 @@ def identify(
     cases = [case] if isinstance(case, Case) else list(case)
     tracks = [track] if isinstance(track, Track) else list(track)
     shared, alone = ([paths] if isinstance(paths, str) else list(paths) for paths in (free, own))
-    rows = checked(cases, tracks, shared, alone, bounds or {}, loss)
+    if loss not in get_args(Loss):
+        raise ValueError(f'Input loss of identify must be "squares" or "absolute"; got {loss!r}')
+    check(cases, tracks, [*shared, *alone])
+    rows = parameters_of(cases, shared, alone, bounds or {})
     names = names_of([one.name for one in cases], len(tracks))
     written = case_names(cases, len(tracks), bool(alone))
     # Many small systems: BLAS threads would only wait for each other.
@@ -122,7 +122,7 @@ def _fits(trials: Trials, names: Sequence[str], written: Sequence[str]) -> tuple
     """Each track with its case and path at the optimum, where the cases have the names to be written."""
     fits = []
     for number, (case, _, track, parameters) in enumerate(trials.recordings):
-        shares = trials.best.shares[trials.blocks.columns[number]]
+        shares = trials.best.shares[trials.columns[number]]
         run = trials.run(number, shares)
         assert run is not None  # as it was followed
         (path,) = trials.paths(number, [run])
@@ -133,16 +133,12 @@ def _fits(trials: Trials, names: Sequence[str], written: Sequence[str]) -> tuple
 
 def _estimates(trials: Trials, names: Sequence[str], intervals: Sequence[tuple[float, float]]) -> tuple[Estimate, ...]:
     """Each parameter with its interval: those shared, then track by track its own."""
-    estimates: dict[int, Estimate] = {}
-    for name, recording, columns in zip(names, trials.recordings, trials.blocks.columns, strict=True):
-        for number, parameter in zip(columns.tolist(), recording.parameters, strict=True):
-            of = name if trials.blocks.several and number >= trials.blocks.shared else None
-            estimates[number] = _estimate(parameter, of, trials.best.shares[number], *intervals[number])
-    return tuple(estimates[number] for number in sorted(estimates))
-
-
-def _estimate(parameter: Parameter, of: str | None, share: float, low: float, high: float) -> Estimate:
-    """A field whose value and interval are at shares of its bounds."""
-    value, least, most = (float(parameter.value(one)) for one in (share, low, high))
-    field = parameter.field
-    return Estimate(field.path, of, field.unit, value, least, most, low <= 0, high >= 1)
+    estimates = []
+    for number, (share, (first, last)) in enumerate(zip(trials.best.shares, intervals, strict=True)):
+        track, slot = np.argwhere(trials.columns == number)[0]
+        parameter = trials.recordings[track].parameters[slot]
+        of = names[track] if trials.several and slot >= trials.shared else None
+        value, low, high = (float(parameter.value(one)) for one in (share, first, last))
+        field = parameter.field
+        estimates.append(Estimate(field.path, of, field.unit, value, low, high, first <= 0, last >= 1))
+    return tuple(estimates)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from active_surface.identification.fit import TrackFit
+from active_surface.identification.estimate import TrackFit
 from active_surface.identification.result import Identified
 from common import Drawing, draw, figure_of, unit_for
 from coupling.pictures import map_axes, put_title

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.identification.estimate import Estimate
-from active_surface.identification.fit import TrackFit
+from active_surface.identification.estimate import Estimate, TrackFit
 from active_surface.identification.track import Track
 from common import draw, notebook_html, quantity_text
 from coupling.case import Case, write_case

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -13,7 +12,6 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from coupling.case import AXES, Quantity, read_columns, unreadable
-from coupling.case.values import first_of
 
 LENGTH: Final = Quantity("m", "150 um")
 QUANTITIES: Final = {"time": Quantity("s", "50 ms"), "x": LENGTH, "y": LENGTH}
@@ -34,7 +32,7 @@ class Track:
     Raises
     ------
     ValueError
-        The arrays are no track; names each mistake.
+        The arrays are no track.
     """
 
     time: FloatArray
@@ -44,21 +42,14 @@ class Track:
         time, position = np.asarray(self.time, dtype=float), np.asarray(self.position, dtype=float)
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "position", position)
-        if wrong := list(_mistakes(time, position)):
-            raise ValueError("\n".join(f"Input {name} of Track {mistake}" for name, mistake in wrong))
-
-
-def _mistakes(time: FloatArray, position: FloatArray) -> Iterator[tuple[str, str]]:
-    """Yield which array is wrong, and why."""
-    if time.ndim != 1 or not len(time):
-        yield "time", f"must have shape (k,); got {time.shape}"
-        return
-    if not (np.isfinite(time).all() and time[0] >= 0 and (np.diff(time) > 0).all()):
-        yield "time", "must be finite, 0 or later, and increase"
-    if position.shape != (len(time), 2):
-        yield "position", f"must have shape ({len(time)}, 2); got {position.shape}"
-    elif np.isinf(position).any() or np.isnan(position).all():
-        yield "position", "must have finite numbers, nan where a place was not measured"
+        if time.ndim != 1 or not len(time):
+            raise ValueError(f"Input time of Track must have shape (k,); got {time.shape}")
+        if not (np.isfinite(time).all() and time[0] >= 0 and (np.diff(time) > 0).all()):
+            raise ValueError("Input time of Track must be finite, 0 or later, and increase")
+        if position.shape != (len(time), 2):
+            raise ValueError(f"Input position of Track must have shape ({len(time)}, 2); got {position.shape}")
+        if np.isinf(position).any() or np.isnan(position).all():
+            raise ValueError("Input position of Track must have finite numbers, nan where a place was not measured")
 
 
 def read_track(path: str | os.PathLike[str]) -> Track:
@@ -89,22 +80,16 @@ def read_track(path: str | os.PathLike[str]) -> Track:
         read = read_columns(file, QUANTITIES, (["time"], AXES[:2]), HEADER)
     except (OSError, ValueError) as error:
         raise ValueError(f"Input track of identify {unreadable(str(file), error)}") from None
-    mistakes = read.mistakes
-    if not mistakes:
-        times = read.columns["time"]
-        mistakes = [
-            f"line {read.lines[k]} must have a later time than the row before; got {times[k]:g} s"
-            for k in range(1, len(times))
-            if times[k] <= times[k - 1]
-        ]
-        if not times:
-            mistakes = ["must have rows below its header; got none"]
-        elif times[0] < 0:
-            mistakes.append(f"line {read.lines[0]} must have a time of 0 or later; got {times[0]:g} s")
+    times, mistakes = read.columns.get("time", ()), list(read.mistakes)
+    if not mistakes and not times:
+        mistakes = ["must have rows below its header; got none"]
+    elif not mistakes and times[0] < 0:
+        mistakes = [f"line {read.lines[0]} must have a time of 0 or later; got {times[0]:g} s"]
+    elif not mistakes and (still := np.flatnonzero(np.diff(times) <= 0)).size:
+        k = int(still[0]) + 1
+        mistakes = [f"line {read.lines[k]} must have a later time than the row before; got {times[k]:g} s"]
     if mistakes:
-        raise ValueError(
-            "\n".join(f"Input track of identify in {file.name}: {mistake}" for mistake in first_of(mistakes))
-        )
+        raise ValueError("\n".join(f"Input track of identify in {file.name}: {mistake}" for mistake in mistakes))
     if read.lost:
         warnings.warn(f"{file.name}: {read.lost} rows without a position are left out", stacklevel=2)
     missing = (np.nan,) * len(times)

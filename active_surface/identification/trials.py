@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from active_surface.arrays import FloatArray
-from active_surface.identification.blocks import Blocks
+from active_surface.arrays import BoolArray, FloatArray
 from active_surface.identification.parameters import case_with
 from active_surface.identification.track import Track
 from active_surface.parameter import Parameter
@@ -23,6 +23,8 @@ Loss = Literal["squares", "absolute"]
 MIDDLE: Final = 0.15  # on both sides of the median: the residuals from which their density there is estimated
 NEGLIGIBLE: Final = 1e-2  # of a cost that one residual adds: less is no progress
 EXACT: Final = 1e-12  # m: what is nearer cannot be told from a path
+NEAR_MEDIAN: Final = 1e-2  # of the median distance: nearer places weigh no more
+REMEMBERED: Final = 400  # paths of a track
 
 
 class Trial(NamedTuple):
@@ -41,14 +43,9 @@ class Recording(NamedTuple):
     track: Track
     parameters: Sequence[Parameter]  # shared, then own
 
-    @property
-    def measured(self) -> int:
-        """Of places along x and y."""
-        return int(np.isfinite(self.track.position).sum())
-
 
 class Trials:
-    """All that were followed so far.
+    """N tracks with m residuals in all, and n parameters: those shared, then track by track its own.
 
     Where residuals are normal, or of Laplace's distribution, with one unknown deviation for each track, their
     likelihood is greatest where the sum of freedom x log(loss) over tracks is least. The cost is the exponential of
@@ -57,28 +54,52 @@ class Trials:
     """
 
     def __init__(self, recordings: Sequence[Recording], shared: int, loss: Loss, threads: int | None) -> None:
-        self.recordings, self.loss, self._threads = list(recordings), loss, threads
-        sizes = [recording.measured for recording in recordings]
-        self.blocks = Blocks.of(sizes, shared, len(recordings[0].parameters) - shared)
-        self.size = sum(sizes)  # m
-        self.freedom = self.blocks.freedom  # (N,)
-        self.all: list[Trial] = []  # without their residuals, which may be many
-        self.best = Trial(np.zeros(self.blocks.count), np.zeros(self.size), np.inf)
+        self.recordings, self.shared, self.loss, self._threads = list(recordings), shared, loss, threads
+        tracks, slots = len(recordings), len(recordings[0].parameters)
+        sizes = np.array([np.isfinite(one.track.position).sum() for one in recordings])
+        ends = np.cumsum(sizes).tolist()
+        self.size = ends[-1]  # m
+        self.rows = [slice(end - size, end) for end, size in zip(ends, sizes.tolist(), strict=True)]  # of each track
+        own = shared + np.arange(tracks * (slots - shared)).reshape(tracks, -1)
+        # (N, s) the number of the parameter in each slot of a track
+        self.columns: NDArray[np.intp] = np.hstack([np.tile(np.arange(shared), (tracks, 1)), own]).astype(np.intp)
+        self.count = int(self.columns.max()) + 1  # n
+        self.several = tracks > 1 and slots > shared  # whether any track has fields that others lack
+        # (N,): own fields take theirs from residuals, shared ones in proportion to places
+        self.freedom: FloatArray = sizes - (slots - shared) - shared * sizes / self.size
+        self.seen: list[tuple[FloatArray, float]] = []  # shares and costs of all that were followed
+        self.best = Trial(np.zeros(self.count), np.zeros(self.size), np.inf)
         self.followed = 0  # paths
         self.refusal = ""  # why a case could not be run
+        self._known: list[dict[bytes, FloatArray]] = [{} for _ in recordings]
 
     def of(self, rows: FloatArray) -> list[Trial]:
         """Trials at shares (k, n), followed side by side."""
-        columns = [self._tried(number, rows[:, own]) for number, own in enumerate(self.blocks.columns)]
-        return self._kept(rows, np.concatenate(columns, axis=1))
+        rows = (1 + rows) - 1  # multiples of the spacing of numbers above 1, as which the search counts them
+        away = [self._tried(number, rows[:, own]) for number, own in enumerate(self.columns)]
+        found = [Trial(np.array(row), one, self.cost(one)) for row, one in zip(rows, np.hstack(away), strict=True)]
+        self.seen += [(trial.shares, trial.cost) for trial in found]
+        self.best = min([self.best, *found], key=lambda trial: trial.cost)
+        return found
 
-    def mixed(self, trials: Sequence[Trial]) -> Trial:
-        """Of trials that share all shared values, for each track the own values of the nearest path."""
-        nearest = np.argmin([self.losses(trial.residuals) for trial in trials], axis=0)
-        shares, residuals = np.array(trials[0].shares), np.array(trials[0].residuals)
-        for number, columns, rows in zip(nearest, self.blocks.columns, self.blocks.rows, strict=True):
-            shares[columns], residuals[rows] = trials[number].shares[columns], trials[number].residuals[rows]
-        return self._kept(shares[None], residuals[None])[0]
+    def slopes(self, trial: Trial, width: float | FloatArray, free: BoolArray) -> FloatArray:
+        """The derivatives (m, n) of residuals at a trial, by differences over a width of the bounds.
+
+        Own fields of all tracks change together, as none of them acts on another's track. 0 of parameters that are not
+        free (n,), and where a case cannot be run.
+        """
+        step = np.where(trial.shares < 0.5, width, -np.asarray(width)) * free
+        slots = self.columns[:, free[self.columns].any(axis=0)]
+        rows, slope = np.tile(trial.shares, (slots.shape[1], 1)), np.zeros((self.size, self.count))
+        for row, slot in zip(rows, slots.T, strict=True):
+            row[slot] += step[slot]
+        others = self.of(rows)
+        for columns, track in zip(slots, self.rows, strict=True):
+            for column, other in zip(columns, others, strict=True):
+                change = other.residuals[track] - trial.residuals[track]
+                if free[column] and np.isfinite(change).all():
+                    slope[track, column] = change / (other.shares[column] - trial.shares[column])
+        return slope
 
     def paths(self, number: int, runs: Sequence[tuple[Micropart, Contact]]) -> list[Trajectory]:
         """The paths of parts with their friction, until a track ends."""
@@ -89,22 +110,26 @@ class Trials:
 
     def losses(self, residuals: FloatArray) -> FloatArray:
         """Of each track (N,), m^2 or m."""
-        sizes = residuals**2 if self.loss == "squares" else np.abs(residuals)
-        least = EXACT**2 if self.loss == "squares" else EXACT
-        return np.array([max(float(sizes[rows].sum()), least) for rows in self.blocks.rows])
+        sizes, least = (residuals**2, EXACT**2) if self.loss == "squares" else (np.abs(residuals), EXACT)
+        return np.array([max(float(sizes[rows].sum()), least) for rows in self.rows])
 
     def cost(self, residuals: FloatArray) -> float:
         """Of residuals (m,)."""
         return float(np.exp(self.freedom @ np.log(self.losses(residuals)) / self.freedom.sum()))
 
-    def weights(self, residuals: FloatArray) -> FloatArray:
-        """The weights (m,) with which least squares step towards the least cost."""
-        weights, scale = np.empty(len(residuals)), self.freedom / self.losses(residuals)
-        for rows, one in zip(self.blocks.rows, scale, strict=True):
-            size = np.abs(residuals[rows])
-            least = 1e-2 * np.median(size) + np.finfo(float).tiny
-            weights[rows] = one if self.loss == "squares" else one / np.maximum(size, least)
-        return weights
+    def robust(self, squares: FloatArray) -> FloatArray:
+        """The cost of squares (m,) of residuals, spread over them, with its slopes (3, m): a `loss` of `least_squares`.
+
+        Without curvature, so that steps are those of least squares with the slopes as weights.
+        """
+        size = np.sqrt(squares)
+        cost, rho = self.cost(size), np.zeros((3, self.size))
+        rho[0] = cost / self.size
+        for rows, loss, freedom in zip(self.rows, self.losses(size), self.freedom / self.freedom.sum(), strict=True):
+            if self.loss == "absolute":
+                loss = 2 * loss * np.maximum(size[rows], NEAR_MEDIAN * np.median(size[rows]) + EXACT)
+            rho[1, rows] = cost * freedom / loss
+        return rho
 
     def curvature(self) -> tuple[FloatArray, FloatArray]:
         """With what weights (N,) tracks' slopes add to the curvature of - log likelihood at the optimum, and to the
@@ -117,7 +142,7 @@ class Trials:
         weight = self.freedom / self.losses(residuals)
         if self.loss == "squares":
             return weight, weight
-        ends = [np.quantile(residuals[rows], (0.5 - MIDDLE, 0.5 + MIDDLE)) for rows in self.blocks.rows]
+        ends = [np.quantile(residuals[rows], (0.5 - MIDDLE, 0.5 + MIDDLE)) for rows in self.rows]
         deviation = np.array([max(float(high - low), EXACT) / (4 * MIDDLE) for low, high in ends])
         return weight / deviation, weight**2
 
@@ -144,18 +169,16 @@ class Trials:
         return part, law
 
     def _tried(self, number: int, rows: FloatArray) -> FloatArray:
-        """Residuals (k, m) of one track at shares (k, s), with equal ones followed once."""
-        unlike, where = np.unique(rows, axis=0, return_inverse=True)
-        runs, track = [self.run(number, shares) for shares in unlike], self.recordings[number].track
+        """Residuals (k, m) of one track at shares (k, s); inf where a case cannot be run."""
+        known, track = self._known[number], self.recordings[number].track
         measured = np.isfinite(track.position)
-        residuals = np.full((len(runs), int(measured.sum())), np.inf)
-        able = [k for k, run in enumerate(runs) if run is not None]
-        for k, path in zip(able, self.paths(number, [run for run in runs if run is not None]), strict=True):
-            residuals[k] = (path.at(track.time).position - track.position)[measured]
-        return residuals[where.reshape(-1)]
-
-    def _kept(self, rows: FloatArray, residuals: FloatArray) -> list[Trial]:
-        found = [Trial(np.array(shares), away, self.cost(away)) for shares, away in zip(rows, residuals, strict=True)]
-        self.all += [trial._replace(residuals=np.zeros(0)) for trial in found]
-        self.best = min([self.best, *found], key=lambda trial: trial.cost)
+        runs = {row.tobytes(): self.run(number, row) for row in rows if row.tobytes() not in known}
+        able = {key: run for key, run in runs.items() if run is not None}
+        new = {key: np.full(int(measured.sum()), np.inf) for key in runs}
+        for key, path in zip(able, self.paths(number, list(able.values())), strict=True):
+            new[key] = (path.at(track.time).position - track.position)[measured]
+        known |= new
+        found = np.array([known[row.tobytes()] for row in rows])
+        for key in list(known)[:-REMEMBERED]:
+            del known[key]
         return found
