@@ -1,4 +1,4 @@
-from .parameters import FULL as FULL, PARAMETERS as PARAMETERS, Parameters as Parameters, QUICK as QUICK
+from .bench import FULL as FULL, PARAMETERS as PARAMETERS, Parameters as Parameters, QUICK as QUICK
 from .reproduction import reproduce as reproduce
 from .verdict import Verdict as Verdict
 

@@ -1,4 +1,4 @@
-"""The bench on which paths are found in three models, and what becomes of a part on such a path.
+"""Parameters for all figures, and the bench on which paths are found with them in three models.
 
 "paper": the paper's scheme of fixed steps on the surface of equation (2).  "closed": our equations with located events
 on the same surface.  "plate": the same on a plate of finite elements, which all actuators are attached to.
@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from active_surface.arrays import FloatArray
-from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters, Place
 from active_surface.paper.profiles import profile_outline, profile_surface
 from coupling import PathTask, follow, one_blas_thread, surface_motion
 from coupling.case import RunCase
-from fem_plate import DiscShapes, Plate, Shapes
+from fem_plate import DiscShapes, Plate, PlateSection, Shapes
 from meshes import Outline, disc
-from particle import Drive, EventKind, Micropart, SurfaceMotion, Trajectory
+from particle import Drive, EventKind, KogutEtsion, Micropart, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
 PAPER, CLOSED, PLATE = "paper", "closed", "plate"
@@ -35,6 +34,65 @@ LAST_CYCLES: Final = 5  # in which a part must stay near the actuator to have co
 STAYS, OFF, OVER, UNKNOWN = "ends on the surface", "comes off", "goes over the rim", "not followed"
 ENDS: Final = {"stuck": STAYS, "moving": STAYS, "detached": OFF, "left the plate": OVER}
 """How paths end, by their outcome; with another one the part was not followed: too much load or work."""
+Place = tuple[float, float]  # m
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What the paper states, and what it leaves open (docs/paper-open-points.md): one set for all figures.
+
+    What one figure alone needs and the paper does not state stands beside its computation.
+    """
+
+    radius: float = 300e-6  # m, a of equation (2); left open
+    pitch: float = 150e-6  # m, between two actuators
+    stroke: float = 150e-6  # m
+    strokes: tuple[float, ...] = (100e-6, 200e-6)  # m, least and largest of figure 18
+    slipping: tuple[float, ...] = (80e-6, 95e-6, 110e-6)  # m, strokes of figures 5 and 6; left open
+    carrying: tuple[float, ...] = (60e-6, 70e-6, 80e-6, 90e-6, 100e-6)  # m, strokes of figure 15; left open
+    mass: float = 2e-9  # kg
+    gravity: float = 0.0  # m/s^2; the paper's forces have no weight
+    friction: Contact = field(default_factory=KogutEtsion.paper)
+    start: Place = (100e-6, 100e-6)  # figure 17, and wherever none is given
+    cycles: int = 30  # how long continuous drives run
+    time_step: float = 2e-6  # s, of the paper's scheme; left open
+    tolerance: float = 1e-8  # of the located events
+    jitter: float = 1e-6  # m, by which starts are displaced at most along x and along y: places are given in um
+    near: float = 30e-6  # m: a part has converged that spends the last five cycles so close to the actuator
+    far: float = 200e-6  # m: it has left the actuator's region when it gets farther than that, or over the rim
+    youngs_modulus: float = 169e9  # Pa; with rigid actuators and a clamped rim neither it nor the thickness counts
+    poisson_ratio: float = 0.3  # of the plate
+    thickness: float = 5e-6  # m
+    density: float = 2330.0  # kg/m^3, of the plate; counts with inertia alone
+    contact_side: float = 100e-6  # m, of the part's square contact
+    seed: int = 4
+
+    @property
+    def section(self) -> PlateSection:
+        """Of the plate."""
+        return PlateSection(self.youngs_modulus, self.poisson_ratio, self.thickness, self.density)
+
+
+PARAMETERS = Parameters()
+
+
+class Effort(NamedTuple):
+    """How many starts, frequencies and places are looked at."""
+
+    name: str
+    starts: int  # jittered starts with located events
+    starts_by_steps: int  # with the paper's scheme, whose paths take a hundred times longer
+    frequencies: int  # of figures 5, 6 and 15
+    step: float  # Hz, between frequencies of figure 18
+    strokes: int  # of figure 18
+    across: int  # places along the plate, figures 5 and 6
+    pitches: int  # of the dead zones
+    candidates: int  # frequencies tried there
+
+
+QUICK = Effort("quick", 60, 36, 40, 20.0, 5, 50, 11, 6)
+FULL = Effort("full", 400, 100, 80, 10.0, 9, 120, 11, 12)
+TINY = Effort("tiny", 2, 1, 3, 200.0, 2, 12, 1, 1)  # for tests: shows that it runs, and nothing else
 
 
 class Ground(NamedTuple):
@@ -82,16 +140,12 @@ class Bench:
         """An up-down drive, continuous or with a number of cycles."""
         return Drive(self.parameters.stroke if stroke is None else stroke, frequency, cycles=cycles)
 
-    def duration(self, *drives: Drive) -> float:
-        """How long [s] continuous drives run, by cycles of the slowest."""
-        return self.parameters.cycles / min(drive.frequency for drive in drives)
-
     def paths(
         self,
         model: str,
         drives: Sequence[Drive],
         starts: ArrayLike,
-        duration: float,
+        duration: float | None = None,
         velocities: ArrayLike = (0.0, 0.0),
         ground: Ground | None = None,
         friction: Contact | None = None,
@@ -99,10 +153,11 @@ class Bench:
     ) -> list[Path]:
         """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1.
 
-        Over one actuator with the friction and the tolerance of the parameters, where nothing else is given.
+        Over one actuator with the friction and the tolerance of the parameters, for as long as the slowest drive takes
+        for their number of cycles, where nothing else is given.
         """
         p, ground = self.parameters, ground or self.ground(model)
-        surface = ground.surface.driven_by(drives)
+        surface, slowest = ground.surface.driven_by(drives), min(drive.frequency for drive in drives)
         places = np.atleast_2d(np.asarray(starts, dtype=float))
         speeds = np.broadcast_to(np.asarray(velocities, dtype=float), places.shape)
         parts = [
@@ -111,7 +166,8 @@ class Bench:
         ]
         law = p.friction if friction is None else friction
         steps = {"scheme": "paper", "time_step": p.time_step} if model == PAPER else {}
-        run = RunCase(duration=duration, gravity=p.gravity, tolerance=tolerance or p.tolerance, **steps)
+        end = duration or p.cycles / slowest
+        run = RunCase(duration=end, gravity=p.gravity, tolerance=tolerance or p.tolerance, **steps)
         return [Path(one, ground.offset) for one in follow([PathTask(surface, part, law, run) for part in parts])]
 
     def count(self, model: str) -> int:

@@ -89,11 +89,10 @@ def _reached(bench: Bench, pitch: float, starts: FloatArray) -> BoolArray:
         for frequency in np.geomspace(*FREQUENCIES, bench.effort.candidates).tolist():
             left, drives = np.flatnonzero(~reached), [Drive(0.0, 1.0)] * 9
             drives[4] = bench.drive(frequency, stroke)
-            end = bench.duration(drives[4])
-            paths = (
-                bench.paths(PLATE, drives, starts[left], end, ground=ground, tolerance=TOLERANCE) if len(left) else []
-            )
-            reached[left] = [path.end == STAYS and path.away()[-1] <= NEAR for path in paths]
+            if len(left):
+                end = bench.parameters.cycles / frequency
+                paths = bench.paths(PLATE, drives, starts[left], end, ground=ground, tolerance=TOLERANCE)
+                reached[left] = [path.end == STAYS and path.away()[-1] <= NEAR for path in paths]
     return reached
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
-from active_surface.paper.bench import MODELS, STAYS, Bench, Path, coming_off
-from active_surface.paper.parameters import Place
+from active_surface.paper.bench import MODELS, STAYS, Bench, Path, Place, coming_off
 from active_surface.paper.picture import (
     COLOURS,
     GOLD,
@@ -114,7 +113,7 @@ def convergence(bench: Bench) -> Found:
         count = bench.count(model)
         at_rest, moving_on = (bench.starts(p.start, count), (0.0, 0.0)), states(p.seed, count)
         paths = {
-            name: bench.paths(model, [bench.drive(f)], places, bench.duration(bench.drive(f)), velocities)
+            name: bench.paths(model, [bench.drive(f)], places, velocities=velocities)
             for name, f, (places, velocities) in (("17a", LOW, at_rest), ("17b", HIGH, at_rest), ("19", ANY, moving_on))
         }
         numbers["17a"][model] = converging(bench, paths["17a"], LOW)
@@ -197,10 +196,9 @@ def _placed(
     bench: Bench, model: str, states: Sequence[tuple[Place, Place]], frequency: float, count: int
 ) -> FloatArray:
     """Distances [m] from the actuator after the cycles, (states, count); nan: the part is gone."""
-    drive = bench.drive(frequency)
     starts = np.concatenate([bench.starts(place, count) for place, _ in states])
     speeds = np.repeat([velocity for _, velocity in states], count, axis=0)
-    paths = bench.paths(model, [drive], starts, bench.duration(drive), speeds)
+    paths = bench.paths(model, [bench.drive(frequency)], starts, velocities=speeds)
     return np.reshape([path.away()[-1] if path.end == STAYS else np.nan for path in paths], (len(states), count))
 
 

@@ -12,11 +12,10 @@ from string import Template
 from time import perf_counter
 from typing import Any, Final, NamedTuple
 
-from active_surface.paper.bench import MODELS, PAPER, Bench
+from active_surface.paper.bench import MODELS, PAPER, PARAMETERS, QUICK, Bench, Effort, Parameters
 from active_surface.paper.dead_zones import dead_zones
 from active_surface.paper.feasible_area import feasible_area
 from active_surface.paper.one_actuator import accuracy, convergence, translocation
-from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters
 from active_surface.paper.picture import FigureResult, Found, draw
 from active_surface.paper.strokes import deceleration, friction_logic, radial
 from active_surface.paper.threshold import threshold

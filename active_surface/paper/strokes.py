@@ -10,8 +10,7 @@ import numpy as np
 from scipy.stats import linregress
 
 from active_surface.arrays import FloatArray
-from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench, Path
-from active_surface.paper.parameters import Place
+from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench, Path, Place
 from active_surface.paper.picture import GREEN, GREY, LOOK, MICRO, MILLI, Curve, Found, Panel, dots, look
 from active_surface.paper.statements import SLIP, STICK
 from particle import (
@@ -21,10 +20,12 @@ from particle import (
     HermiteDrive,
     KogutEtsion,
     Micropart,
+    SurfaceMotion,
     Trajectory,
     platform_surface,
     simulate,
 )
+from particle.friction import Contact
 
 SCHEMES: Final = {PAPER: "paper", CLOSED: "events"}
 END, PIECES = 4.0, 400  # s, and of the platform's motion
@@ -74,21 +75,21 @@ def friction_logic(bench: Bench) -> Found:
     limit = float(p.friction.friction_limit(p.mass * p.gravity))
     numbers: dict[str, dict[str, Any]] = {"3": {}, "4": {}, "4 (reversals)": {}}
     ramps, times = [], np.linspace(0, END, 401)
-    for model, scheme in SCHEMES.items():
-        load, friction = _ramp(bench, limit / p.mass, scheme)
+    for model in SCHEMES:
+        load, friction = _ramp(bench, limit / p.mass, model)
         wrong = float(np.abs(friction - np.minimum(load, limit)).max() / limit)
         numbers["3"][model] = {"friction_limit": limit, "largest_difference": wrong}
-        ramps.append(Curve(load * 1e9, friction * 1e9, LOOK[model] | {"label": f'"{scheme}"'}))
+        ramps.append(Curve(load * 1e9, friction * 1e9, LOOK[model] | {"label": f'"{SCHEMES[model]}"'}))
     panels = [Panel("load along the surface [nN]", "friction [nN]", ramps, "figure 3")]
     for platform in PLATFORMS:
         velocity, curves = platform.motion(times)[1], []
-        for model, scheme in SCHEMES.items():
-            swing = _swing(bench, scheme, platform)
+        for model in SCHEMES:
+            swing = _swing(bench, model, platform)
             name = model if platform is PLATFORMS[0] else f"{platform.name}: {model}"
             numbers["4"][name] = slips_of(swing)._asdict()
             numbers["4 (reversals)"][name] = _zeros(platform, swing)
             relative = swing.at(times).velocity[:, 0]
-            curves.append(Curve(times, relative, LOOK[model] | {"label": f'part to platform, "{scheme}"'}))
+            curves.append(Curve(times, relative, LOOK[model] | {"label": f'part to platform, "{SCHEMES[model]}"'}))
         part = velocity + relative
         curves.insert(0, Curve(times, velocity, {"color": GREY, "linewidth": 1.0, "label": "platform"}))
         curves.insert(1, Curve(times, part, {"color": GREEN, "linestyle": "-.", "linewidth": 1.2, "label": "part"}))
@@ -150,28 +151,32 @@ def _zeros(platform: Platform, swing: Trajectory) -> dict[str, Any]:
     }
 
 
-def _ramp(bench: Bench, limit: float, scheme: str) -> tuple[FloatArray, FloatArray]:
+def _ramp(bench: Bench, limit: float, model: str) -> tuple[FloatArray, FloatArray]:
     """The load along a platform whose acceleration grows steadily past a limit [m/s^2], and the friction on it [N]."""
     p, rate = bench.parameters, RAMP * limit / RAMP_END
 
     def motion(t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         return rate * t**3 / 6, rate * t**2 / 2, rate * t
 
-    drive = HermiteDrive.of(motion, RAMP_END, 20)
-    surface = platform_surface(x=drive, size=float(motion(np.array([RAMP_END]))[0][0]))
-    step = p.time_step if scheme == "paper" else None
-    part = Micropart(p.mass, (0.0, 0.0))
-    path = simulate(surface, part, p.friction, RAMP_END, p.gravity, scheme=scheme, time_step=step)
+    surface = platform_surface(x=HermiteDrive.of(motion, RAMP_END, 20), size=rate * RAMP_END**3 / 6)
+    path = _ridden(bench, model, surface, p.friction, RAMP_END, p.time_step)
     times = np.linspace(0, RAMP_END, 201)[1:-1]
     return p.mass * rate * times, path.at(times).friction_force
 
 
-def _swing(bench: Bench, scheme: str, platform: Platform) -> Trajectory:
+def _swing(bench: Bench, model: str, platform: Platform) -> Trajectory:
     """The part on a platform that swings ever more widely."""
-    p = bench.parameters
     surface = platform_surface(x=HermiteDrive.of(platform.motion, END, PIECES), size=END)
-    law, step = ConstantFriction(platform.limit * p.mass), SWING_STEP if scheme == "paper" else None
-    return simulate(surface, Micropart(p.mass, (0.0, 0.0)), law, END, p.gravity, scheme=scheme, time_step=step)
+    law = ConstantFriction(platform.limit * bench.parameters.mass)
+    return _ridden(bench, model, surface, law, END, SWING_STEP)
+
+
+def _ridden(bench: Bench, model: str, platform: SurfaceMotion, law: Contact, end: float, step: float) -> Trajectory:
+    """The path of a part that begins at rest on a platform."""
+    p, steps = bench.parameters, step if model == PAPER else None
+    return simulate(
+        platform, Micropart(p.mass, (0.0, 0.0)), law, end, p.gravity, scheme=SCHEMES[model], time_step=steps
+    )
 
 
 def radial(bench: Bench) -> Found:

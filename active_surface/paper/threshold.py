@@ -83,8 +83,7 @@ def ends_at(bench: Bench, model: str, stroke: float, frequencies: ArrayLike, cou
     p, rows = bench.parameters, []
     starts = np.column_stack([np.linspace(NEAREST, FARTHEST, count), np.zeros(count)])
     for frequency in np.asarray(frequencies).tolist():
-        drive = bench.drive(frequency, stroke)
-        paths = bench.paths(model, [drive], starts, bench.duration(drive))
+        paths = bench.paths(model, [bench.drive(frequency, stroke)], starts)
         lost = np.array([path.lost(p.far) for path in paths])
         near = np.array([path.converged(1 / frequency, p.near) for path in paths])
         rows.append((near & ~lost, lost, [path.trajectory.path_length > MOVED for path in paths]))

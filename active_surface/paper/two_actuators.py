@@ -11,8 +11,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from active_surface.paper.bench import CLOSED, OVER, PAPER, PLATE, STAYS, Bench, Path, coming_off
-from active_surface.paper.parameters import Place
+from active_surface.paper.bench import CLOSED, OVER, PAPER, PLATE, STAYS, Bench, Path, Place, coming_off
 from active_surface.paper.picture import GREY, MICRO, Curve, Found, Panel, dots, ways
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.verdict import Share, share_of
@@ -52,7 +51,7 @@ HANDOVERS: Final = {
 }
 
 
-def paths_of(bench: Bench, drives: Sequence[Drive], start: Place | None, duration: float) -> Paths:
+def paths_of(bench: Bench, drives: Sequence[Drive], start: Place | None, duration: float | None = None) -> Paths:
     """Paths by surface from jittered starts, or from anywhere; drives of the actuators at (0, 0) and (pitch, 0)."""
     found = {}
     for name, (model, actuators) in SURFACES.items():
@@ -131,7 +130,7 @@ def handover(bench: Bench) -> Found:
     ):
         drives = [bench.drive(frequency) for frequency in one.frequencies]
         row = []
-        for name, paths in paths_of(bench, drives, start, bench.duration(*drives)).items():
+        for name, paths in paths_of(bench, drives, start).items():
             does = [arrives(bench, one, path) for path in paths]
             numbers[figure][name] = {
                 "share": share_of(does),

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench
+from active_surface.paper.bench import CLOSED, MODELS, PAPER, PARAMETERS, Bench
 from active_surface.paper.feasible_area import onset
-from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.reproduction import found_of
 from active_surface.paper.strokes import PLATFORMS
 from active_surface.paper.threshold import loss_from

@@ -8,9 +8,8 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from active_surface.paper import reproduction
-from active_surface.paper.bench import MODELS, Bench
+from active_surface.paper.bench import MODELS, PARAMETERS, TINY, Bench
 from active_surface.paper.dead_zones import touched
-from active_surface.paper.parameters import PARAMETERS, TINY
 from active_surface.paper.picture import draw
 from active_surface.paper.reproduction import FIGURES, figures_of, found_of, page_of, reproduce, rounded
 from active_surface.paper.statements import STATEMENTS

@@ -5,11 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from active_surface.paper.bench import Bench, Path, coming_off
+from active_surface.paper.bench import PARAMETERS, Bench, Path, coming_off
 from active_surface.paper.dead_zones import widest_served
 from active_surface.paper.feasible_area import curve_of
 from active_surface.paper.one_actuator import converging, grows, leaving, placing, window, within
-from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.statements import STATEMENTS
 from active_surface.paper.strokes import slips_of, zero_after_each
 from active_surface.paper.threshold import Ends, first_loss, quadratic_of, shares_around
