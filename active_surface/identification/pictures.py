@@ -22,52 +22,36 @@ MEASURED: Final[dict[str, Any]] = {
     "alpha": 0.7,
 }
 COLOURS: Final = ("#1b4f9c", "#c8371b")  # of x and y
-ROW: Final = 2.6  # in, of one of several tracks
+ROW, LEAST_HEIGHT = 2.6, 3.8  # in, of one of several tracks, and of all
 WORDS: Final[dict[str, Any]] = {"fontsize": 9, "parse_math": False}
 
 
 @draw.register(Identified)
 def draw_identified(result: Identified, axes: Axes | None = None) -> Figure:
-    """Draw a result into a figure of its own, or paths and tracks over the plane into axes in m."""
+    """Draw a result: a row for each track, over the plane and over time; with axes in m, all over the plane."""
     if axes is not None:
         for fit in result.fits:
             _draw_plane(axes, fit, 1.0)
         axes.legend(frameon=False)
         return figure_of(axes)
-    alone = len(result.fits) == 1
-    figure = _of_one(result.fits[0]) if alone else _of_several(result)
-    lines = [f"{one.field} = {one.text}" for one in result.estimates if alone or one.case is None]
-    name = result.fits[0].case.name if alone else ", ".join(fit.name for fit in result.fits)
-    put_title(figure, "\n".join([name, *lines]), fontsize=10)
-    return figure
-
-
-def _of_one(fit: TrackFit) -> Figure:
-    figure = Drawing(figsize=(12.0, 5.6))
-    grid = figure.add_gridspec(2, 2, width_ratios=(1, 1.3), height_ratios=(2, 1))
-    _draw_map(figure.add_subplot(grid[:, 0]), fit)
-    over_time = figure.add_subplot(grid[0, 1])
-    _draw_times(over_time, figure.add_subplot(grid[1, 1], sharex=over_time), fit)
-    return figure
-
-
-def _of_several(result: Identified) -> Figure:
-    """A row for each track, with its own fields above its places over time."""
     count = len(result.fits)
-    figure = Drawing(figsize=(13.0, 0.8 + ROW * count))
+    figure = Drawing(figsize=(13.0, 0.8 + max(ROW * count, LEAST_HEIGHT)))
     grid = figure.add_gridspec(count, 3, width_ratios=(1, 1.6, 1.2))
     for row, fit in enumerate(result.fits):
         plane, places, rest = (figure.add_subplot(grid[row, column]) for column in range(3))
         _draw_map(plane, fit, legend=not row)
         _draw_times(places, rest, fit, legend=not row)
-        places.set_xlabel(rest.get_xlabel())
-        plane.set_title(fit.name, **WORDS)
+        if count > 1:
+            plane.set_title(fit.name, **WORDS)
         own = [f"{one.field} = {one.text}" for one in result.estimates if one.case == fit.name]
         places.set_title("\n".join(own), **WORDS)
+    name = result.fits[0].case.name if count == 1 else ", ".join(fit.name for fit in result.fits)
+    lines = [f"{one.field} = {one.text}" for one in result.estimates if one.case is None]
+    put_title(figure, "\n".join([name, *lines]), fontsize=10)
     return figure
 
 
-def _draw_map(axes: Axes, fit: TrackFit, legend: bool = True) -> None:
+def _draw_map(axes: Axes, fit: TrackFit, legend: bool) -> None:
     unit = unit_for(fit.track.position[np.isfinite(fit.track.position)], "m")
     _draw_plane(axes, fit, unit.per_si)
     if legend:
@@ -83,7 +67,7 @@ def _draw_plane(axes: Axes, fit: TrackFit, per_si: float) -> None:
     axes.plot(*(fit.track.position * per_si).T, color=COLOURS[0], **MEASURED, label="track")
 
 
-def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool = True) -> None:
+def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool) -> None:
     """Draw x and y over time, and path minus track."""
     track, path = fit.track, fit.trajectory
     times = np.linspace(0, track.time[-1], SAMPLES)
@@ -105,8 +89,8 @@ def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool = True) ->
     rest.axhline(0, color="black", linewidth=0.8)
     places.set_ylabel(f"place [{unit.name}]")
     rest.set_ylabel(f"path - track [{left.name}]")
-    rest.set_xlabel(f"time [{clock.name}]")
     if legend:
         places.legend(frameon=False, fontsize=8)
     for axes in (places, rest):
+        axes.set_xlabel(f"time [{clock.name}]")
         axes.grid(alpha=0.3)

@@ -18,7 +18,7 @@ LEVEL: Final = 0.95  # of intervals
 FIRST_WIDTH: Final = 1e-3  # of the bounds: that of the first differences
 WIDTHS: Final = 1e-6, 0.05  # of the bounds: the least and the largest
 NEAR_ENOUGH: Final = 0.03  # of half an interval: by how much the first try goes beyond where a line would end it
-EXACT: Final = 2e-3  # of half an interval: how exact its ends are
+EXACT: Final = 0.01  # of half an interval: how exact its ends are
 LONGER: Final = 4.0  # a step over the one before
 LEAST: Final = 1e-9  # of the bounds: ends are not sought closer
 STEEP: Final = 9.0  # times the rise at the end of an interval: higher ones count as this
@@ -63,14 +63,10 @@ def profiled(trials: Trials, tell: ProgressCallback = no_progress) -> list[tuple
 
     tell: gets how many of the ends are known.
     """
-    count = trials.count
     for _ in range(AGAIN):
         before, spread = trials.best.cost, spread_of(trials)
-        ends: list[float] = []
-        for number in range(count):
-            for side in (-1, 1):
-                tell(len(ends), 2 * count)
-                ends.append(_end(trials, spread, number, side))
+        sought = [(spread, number, side) for number in range(trials.count) for side in (-1, 1)]
+        ends = trials.side_by_side(lambda own, one: _end(own, *one), sought, tell)
         if trials.alike(trials.best.cost, before):
             break
         polish(trials)

@@ -21,7 +21,7 @@ POINTS: Final = 32  # for each parameter, anywhere within the bounds
 STARTS: Final = 6  # of these, from which steps are made
 APART: Final = 0.05  # of the bounds: starts that are closer are one
 WIDTH: Final = 0.02  # of the bounds: the first width of differences
-NARROWER: Final = (2e-3, 1e-4)  # the next ones, at the best optimum
+NARROWER: Final = (2e-3, 1e-4, 1e-5)  # the next ones, at the best optimum
 FLAT: Final = 1e-12  # of the cost, which changes no more over the bounds: the data say nothing
 
 
@@ -44,9 +44,7 @@ def search(trials: Trials, seed: int, tell: ProgressCallback = no_progress) -> N
         raise ValueError(
             f"Input bounds of identify must have values with which the case runs; it says: {trials.refusal}"
         )
-    for settled, trial in enumerate(starts):
-        tell(settled, len(starts))
-        fit(trials, trial.shares, WIDTH)
+    trials.side_by_side(lambda own, trial: fit(own, trial.shares, WIDTH), starts, tell)
     polish(trials)
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Final, Literal, NamedTuple
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from copy import copy
+from threading import Event
+from typing import Final, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +15,15 @@ from active_surface.arrays import BoolArray, FloatArray
 from active_surface.identification.parameters import case_with
 from active_surface.identification.track import Track
 from active_surface.parameter import Parameter
-from coupling import PathTask, build_friction, build_part, follow
+from coupling import PathTask, ProgressCallback, build_friction, build_part, follow
 from coupling.case import Case
-from particle import Micropart, SurfaceMotion, Trajectory
+from particle import Micropart, SurfaceMotion, Trajectory, interruptible, processors
 from particle.friction import Contact
 from particle.surface import rim_gap
 
 Loss = Literal["squares", "absolute"]
+Item = TypeVar("Item")
+Found = TypeVar("Found")
 
 MIDDLE: Final = 0.15  # on both sides of the median: the residuals from which their density there is estimated
 NEGLIGIBLE: Final = 1e-2  # of a cost that one residual adds: less is no progress
@@ -71,6 +76,7 @@ class Trials:
         self.best = Trial(np.zeros(self.count), np.zeros(self.size), np.inf)
         self.followed = 0  # paths
         self.refusal = ""  # why a case could not be run
+        self._stop = Event()
         self._known: list[dict[bytes, FloatArray]] = [{} for _ in recordings]
 
     def of(self, rows: FloatArray) -> list[Trial]:
@@ -80,6 +86,37 @@ class Trials:
         found = [Trial(np.array(row), one, self.cost(one)) for row, one in zip(rows, np.hstack(away), strict=True)]
         self.seen += [(trial.shares, trial.cost) for trial in found]
         self.best = min([self.best, *found], key=lambda trial: trial.cost)
+        return found
+
+    def side_by_side(
+        self, work: Callable[[Trials, Item], Found], items: Sequence[Item], tell: ProgressCallback
+    ) -> list[Found]:
+        """What work(trials, item) gives for each item, on threads: each knows the trials so far and its own alone.
+
+        So the result is the same for any number of threads.  tell: gets how many are done.
+        """
+        branches, known = [copy(self) for _ in items], len(self.seen)
+        for branch in branches:
+            branch.seen, branch.followed, branch._threads, branch._stop = list(self.seen), 0, 1, Event()
+            branch._known = [dict(own) for own in self._known]
+        pool = ThreadPoolExecutor(self._threads or processors())
+        found: list[Found] = []
+
+        def gather() -> None:
+            for one in pool.map(work, branches, items):
+                found.append(one)
+                tell(len(found), len(items))
+
+        try:
+            interruptible(gather)
+        finally:
+            for branch in branches:
+                branch._stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+        for branch in branches:
+            self.seen += branch.seen[known:]
+            self.followed += branch.followed
+        self.best = min([self, *branches], key=lambda one: one.best.cost).best
         return found
 
     def slopes(self, trial: Trial, width: float | FloatArray, free: BoolArray) -> FloatArray:
@@ -104,6 +141,8 @@ class Trials:
     def paths(self, number: int, runs: Sequence[tuple[Micropart, Contact]]) -> list[Trajectory]:
         """The paths of parts with their friction, until a track ends."""
         case, surface, track, _ = self.recordings[number]
+        if self._stop.is_set():
+            raise KeyboardInterrupt
         self.followed += len(runs)
         run = case.run.model_copy(update={"duration": float(track.time[-1])})
         return follow([PathTask(surface, part, law, run) for part, law in runs], self._threads)

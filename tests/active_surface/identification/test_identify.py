@@ -62,6 +62,12 @@ def test_value_and_interval_are_those_of_linear_regression():
     assert found.residual == pytest.approx(NOISE, rel=0.3)
 
 
+def test_the_result_is_the_same_for_any_number_of_threads():
+    one, three = (identify(braking(), braked(), ["part.squeeze", "part.mass"], threads=count) for count in (1, 3))
+    assert one.estimates == three.estimates and one.paths == three.paths
+    assert (one.correlation == three.correlation).all()
+
+
 def test_least_distance_is_the_weighted_median_which_outliers_hardly_move():
     track = braked(outliers=5)
     found = identify(braking(), track, "part.squeeze", loss="absolute", threads=1)
