@@ -95,9 +95,9 @@ class Trials:
 
         So the result is the same for any number of threads.  tell: gets how many are done.
         """
-        branches, known = [copy(self) for _ in items], len(self.seen)
+        branches, known, stop = [copy(self) for _ in items], len(self.seen), Event()
         for branch in branches:
-            branch.seen, branch.followed, branch._threads, branch._stop = list(self.seen), 0, 1, Event()
+            branch.seen, branch.followed, branch._threads, branch._stop = list(self.seen), 0, 1, stop
             branch._known = [dict(own) for own in self._known]
         pool = ThreadPoolExecutor(self._threads or processors())
         found: list[Found] = []
@@ -110,8 +110,7 @@ class Trials:
         try:
             interruptible(gather)
         finally:
-            for branch in branches:
-                branch._stop.set()
+            stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
         for branch in branches:
             self.seen += branch.seen[known:]
