@@ -14,7 +14,7 @@ from coupling.case import Case
 from particle import Trajectory
 
 MOST_DIGITS: Final = 9
-TELLING: Final = 3.0  # standard deviations of the correlation of successive residuals that are independent
+SIGNIFICANT: Final = 3.0  # standard deviations of the correlation of successive residuals that are independent
 EARLY: Final = 1e-9  # of the track's end
 
 
@@ -103,12 +103,12 @@ class TrackFit:
 
     def warnings(self) -> list[str]:
         """What limits the trust in it."""
-        told = []
-        if self.succession > TELLING / np.sqrt(len(self.residuals)):
-            told.append(
+        found = []
+        if self.succession > SIGNIFICANT / np.sqrt(len(self.residuals)):
+            found.append(
                 f"residuals follow each other (correlation {self.succession:.2f}): the model leaves more than noise, "
                 "and intervals are too narrow"
             )
         if self.trajectory.time[-1] < self.track.time[-1] * (1 - EARLY) and self.trajectory.at_rest_since is None:
-            told.append(f"the path ends before the track: {self.trajectory.sentence}")
-        return told
+            found.append(f"the path ends before the track: {self.trajectory.sentence}")
+        return found

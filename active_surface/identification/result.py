@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from common import Axes, Figure
 
-ALIKE: Final = 0.95  # a correlation that tells of two fields which hardly differ in what they do
+ALIKE: Final = 0.95  # a correlation of two fields that hardly differ in their effect
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,15 +108,15 @@ class Identified:
 
     def warnings(self) -> list[str]:
         """What limits the trust in it."""
-        told = [
+        found = [
             f"{first} and {second} can hardly be told apart: the correlation of their errors is {r:.3f}"
             for first, second, r in self.alike
         ]
         these = "this track" if len(self.fits) == 1 else "these tracks"
-        told += [f"{one.label} is not determined by {these}" for one in self.estimates if not one.determined]
+        found += [f"{one.label} is not determined by {these}" for one in self.estimates if not one.determined]
         for fit in self.fits:
-            told += [f"{fit.name}: {text}" if len(self.fits) > 1 else text for text in fit.warnings()]
-        return told
+            found += [f"{fit.name}: {text}" if len(self.fits) > 1 else text for text in fit.warnings()]
+        return found
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units."""
@@ -155,8 +155,8 @@ class Identified:
         *files, picture = check_free(folder, list(cases), overwrite)
         for file, fit in zip(files, cases.values(), strict=True):
             of = [one for one in self.estimates if one.case in (None, fit.name)]
-            said = "\n".join(f"{one.field} = {one.text}" for one in of)
-            write_case(fit.case, file, f"Fitted to a track:\n{said}")
+            values = "\n".join(f"{one.field} = {one.text}" for one in of)
+            write_case(fit.case, file, f"Fitted to a track:\n{values}")
         return replace(self, files=(*files, save_picture(draw(self), picture)))
 
     def plot(self, axes: Axes | None = None) -> Figure:
