@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Final, NamedTuple
 
 from coupling.case import Case, RunCase
+from coupling.margins import PathLoads
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, ProgressCallback, no_progress, silent
 from coupling.result import Result
@@ -138,7 +139,10 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
         results = []
         with progress("Checking the model's validity") as tell:
             for case, scene, path, tighter in zip(cases, scenes, paths[::2], paths[1::2], strict=True):
-                results.append(Result(case, scene, path, summarise(case, scene, path, tighter, build_friction(case))))
+                friction = build_friction(case)
+                loads = PathLoads(case, scene.surface, path, friction)
+                summary = summarise(case, scene, loads, tighter, friction)
+                results.append(Result(case, scene, path, summary, loads))
                 tell(len(results), len(cases))
     return results
 

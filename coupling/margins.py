@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -68,10 +69,9 @@ class MarginCurves(NamedTuple):
     contact: FloatArray  # (k,) (N + pull-off force) / scale; nan also where the law has no pull-off
 
 
-def margins_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> Margins:
+def margins_of(scene: Scene, path: PathLoads) -> Margins:
     """The margins of a run."""
-    path = _Path(case, scene.surface, trajectory, friction)
-    ratios, loads = path.sampled(path.times)
+    trajectory, (ratios, loads) = path.trajectory, path.own
     slip = largest(lambda times: _or_least(path.sampled(times)[0]), path.times, _or_least(ratios))
     load = largest(lambda times: _or_least(-path.sampled(times)[1]), path.times, _or_least(-loads))
     if len(path.slips):
@@ -93,18 +93,9 @@ def _or_least(values: FloatArray) -> FloatArray:
     return np.where(np.isnan(values), -np.inf, values)
 
 
-def margin_curves(case: Case, surface: SurfaceMotion, trajectory: Trajectory, friction: Contact) -> MarginCurves:
-    """The margins of a run over time."""
-    path = _Path(case, surface, trajectory, friction)
-    slip, load = path.sampled(path.times)
-    pull_off = path.part.law.pull_off
-    contact = (load + pull_off) / path.scale if np.isfinite(pull_off) else np.full(len(load), np.nan)
-    return MarginCurves(path.times, slip, contact)
-
-
-def event_actuators(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> NDArray[np.int64]:
+def event_actuators(scene: Scene, path: PathLoads) -> NDArray[np.int64]:
     """The actuator (e,) whose stroke counts most when the part slips or comes off; -1: none, or another event."""
-    path, numbers = _Path(case, scene.surface, trajectory, friction), np.full(len(trajectory.events), -1)
+    trajectory, numbers = path.trajectory, np.full(len(path.trajectory.events), -1)
     for kind in (EventKind.SLIPS, EventKind.DETACHES):
         rows = [k for k, event in enumerate(trajectory.events[:MAX_NAMED]) if event.kind is kind]
         places = np.array([trajectory.events[k].position for k in rows]).reshape(-1, 2)
@@ -112,8 +103,8 @@ def event_actuators(case: Case, scene: Scene, trajectory: Trajectory, friction: 
     return numbers
 
 
-class _Path:
-    """The loads on the part along its path."""
+class PathLoads:
+    """The loads on the part along its path; `times` (k,) [s] are the moments at which margins are sampled."""
 
     def __init__(self, case: Case, surface: SurfaceMotion, trajectory: Trajectory, friction: Contact) -> None:
         self.part: Part = part_record(surface, build_part(case), friction, case.run.gravity)
@@ -127,6 +118,19 @@ class _Path:
         part, pull_off = self.part, self.part.law.pull_off
         weight = part.mass * abs(part.gravity) + part.squeeze
         return pull_off if 0 < pull_off < np.inf else weight or part.mass
+
+    @cached_property
+    def own(self) -> tuple[FloatArray, FloatArray]:
+        """What `sampled` gives at `times`."""
+        return self.sampled(self.times)
+
+    @property
+    def curves(self) -> MarginCurves:
+        """The margins over time."""
+        slip, load = self.own
+        pull_off = self.part.law.pull_off
+        contact = (load + pull_off) / self.scale if np.isfinite(pull_off) else np.full(len(load), np.nan)
+        return MarginCurves(self.times, slip, contact)
 
     def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Pull over what friction holds, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
@@ -142,14 +146,16 @@ class _Path:
         return ratios, loads
 
 
-def _margin(scene: Scene, path: _Path, extreme: Extreme, kind: EventKind) -> Margin:
+def _margin(scene: Scene, path: PathLoads, extreme: Extreme, kind: EventKind) -> Margin:
     place = path.trajectory.at([extreme.time]).position
     at = (float(place[0, 0]), float(place[0, 1]))
     actuator = int(_actuators(scene, path, place, np.array([extreme.time]), kind)[0])
     return Margin(extreme.value, extreme.time, at, None if actuator < 0 else actuator)
 
 
-def _actuators(scene: Scene, path: _Path, places: FloatArray, times: FloatArray, kind: EventKind) -> NDArray[np.int64]:
+def _actuators(
+    scene: Scene, path: PathLoads, places: FloatArray, times: FloatArray, kind: EventKind
+) -> NDArray[np.int64]:
     """The actuators (k,) whose strokes count most for slipping or detaching at places (k, 2) [m] and times (k,) [s].
 
     What an actuator does is taken from its influence shape, without the plate's inertia and stretching. It lessens the

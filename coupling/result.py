@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from common import draw, notebook_html
 from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface, frame_times
-from coupling.margins import MarginCurves, margin_curves
-from coupling.part import build_friction
+from coupling.margins import MarginCurves, PathLoads
 from coupling.scene import Scene
 from coupling.summary import Summary
 from fem_plate import PlateShapes
@@ -38,6 +37,8 @@ class Result:
         The part's path.
     summary : Summary
         Its figures, and how exact they are.
+    loads : PathLoads
+        The loads on the part along its path.
     files : tuple of path
         Files that were written.
     """
@@ -46,6 +47,7 @@ class Result:
     scene: Scene
     trajectory: Trajectory
     summary: Summary
+    loads: PathLoads
     files: tuple[Path, ...] = ()
 
     @property
@@ -68,10 +70,10 @@ class Result:
         """The surface as files and pictures have it."""
         return display_surface(self.scene, self.trajectory)
 
-    @cached_property
+    @property
     def margin_curves(self) -> MarginCurves:
         """The margins over time."""
-        return margin_curves(self.case, self.scene.surface, self.trajectory, build_friction(self.case))
+        return self.loads.curves
 
     def __repr__(self) -> str:
         text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."

@@ -20,6 +20,7 @@ from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
 from coupling.environment import versions
 from coupling.files import check_folder
+from coupling.margins import PathLoads
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
 from coupling.result import Result
@@ -119,8 +120,9 @@ def run_over(
         trajectory = interruptible(follow_part, case, scene.surface, friction)
         tighter = interruptible(follow_part, case, scene.surface, friction, True)
     with progress("Checking the model's validity"):
-        summary = summarise(case, scene, trajectory, tighter, friction)
-    result = Result(case, scene, trajectory, summary)
+        loads = PathLoads(case, scene.surface, trajectory, friction)
+        summary = summarise(case, scene, loads, tighter, friction)
+    result = Result(case, scene, trajectory, summary, loads)
     if output is None or record is None:
         return result
     with progress("Writing the results") as tell:
@@ -152,7 +154,7 @@ def quick_summary(case: Case, scene: Scene) -> Summary:
     """The summary of a run without its second path, whose error counts as zero."""
     friction = build_friction(case)
     trajectory = interruptible(follow_part, case, scene.surface, friction)
-    return summarise(case, scene, trajectory, trajectory, friction)
+    return summarise(case, scene, PathLoads(case, scene.surface, trajectory, friction), trajectory, friction)
 
 
 def build_scene(case: Case, progress: Progress = silent, shapes: PlateShapes | None = None) -> Scene:

@@ -15,7 +15,7 @@ from coupling.borders import Thresholds, thresholds_of
 from coupling.case import Case
 from coupling.display import frame_times
 from coupling.drives import fastest, first_jump
-from coupling.margins import Margins, margins_of
+from coupling.margins import Margins, PathLoads, margins_of
 from coupling.measured import MotionFit
 from coupling.plate_figures import PlateFigures, plate_figures
 from coupling.scene import PlateScene, Scene
@@ -88,8 +88,9 @@ def _reader(of_plate: bool) -> TypeAdapter[Summary]:
     return TypeAdapter(PlateSummary if of_plate else Summary)
 
 
-def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:
+def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, friction: Contact) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step."""
+    trajectory = loads.trajectory
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     drives = [*scene.lifts, *scene.base]
@@ -124,7 +125,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         path_error=moved,
         same_events=same,
         path_resolution=case.run.tolerance * scene.surface.size,
-        margins=margins_of(case, scene, trajectory, friction),
+        margins=margins_of(scene, loads),
         thresholds=thresholds_of(case, scene, trajectory, friction),
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, scene, float(trajectory.time[-1])),
     )

@@ -101,7 +101,7 @@ def write_results(
         **(_contact_fields(trajectory, times, rough) if output.forces else {}),
     }
     position = np.column_stack([onto_surface(scene, samples.position), samples.height])
-    arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(case, scene, trajectory, friction))
+    arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(scene, result.loads))
     step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
     step_size = sum(values.nbytes for values in step.values()) + PART_STEP
     check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))

@@ -30,7 +30,7 @@ from coupling.case import (
     scaled_friction,
     with_index,
 )
-from coupling.margins import _actuators, _Path, event_actuators, margin_curves, margins_of
+from coupling.margins import PathLoads, _actuators, event_actuators, margins_of
 from coupling.report.wording import quantity
 from coupling.run import build_friction, follow_part
 from coupling.summary import summary_of
@@ -111,7 +111,7 @@ def test_margins_are_those_of_brute_force(base, seed):
     friction = CoulombCase(coefficient=rng.uniform(0.05, 0.3), adhesion=10 ** rng.uniform(-7.5, -6))
     place = tuple(rng.uniform(-1.5e-4, 1.5e-4, 2))
     case, scene, trajectory = driven(base, drives, friction, place)
-    margins = margins_of(case, scene, trajectory, build_friction(case))
+    margins = margins_of(scene, PathLoads(case, scene.surface, trajectory, build_friction(case)))
     slip, contact = by_brute_force(case, scene, trajectory)
     slips = [event for event in trajectory.events if event.kind is EventKind.SLIPS]
     if slips:
@@ -130,13 +130,12 @@ def test_the_actuator_that_counts_is_the_one_that_moves_the_place_alone(base):
         drives = [Drive(2e-6 if k == n else 1e-9, 3000) for k in (0, 1)]
         place = (-5e-5, 2e-5)
         case, scene, trajectory = driven(base, drives, CoulombCase(coefficient=0.3, adhesion=1e-6), place)
-        margins = margins_of(case, scene, trajectory, build_friction(case))
+        margins = margins_of(scene, PathLoads(case, scene.surface, trajectory, build_friction(case)))
         assert margins.slip.actuator == margins.contact.actuator == n
 
 
 def test_curves_hold_the_margins(base):
-    case, friction = base.case, build_friction(base.case)
-    curves = margin_curves(case, base.surface, base.trajectory, friction)
+    curves = base.margin_curves
     margins = base.summary.margins
     assert np.nanmax(curves.slip) == pytest.approx(margins.slip.value, rel=1e-3)
     assert np.nanmin(curves.contact) == pytest.approx(margins.contact.value, rel=1e-3)
@@ -380,8 +379,7 @@ def test_a_place_that_rounds_off_the_plate_is_not_tried():
 
 def test_actuators_of_events_are_those_of_each_at_its_own_time(tmp_path, monkeypatch):
     result = run_case(read_text(tmp_path, OF_TWO).vary({"run.duration": "20 ms"}))
-    given = result.case, result.scene, result.trajectory, build_friction(result.case)
-    path = _Path(given[0], given[1].surface, *given[2:])
+    path = result.loads
     alone = [
         int(_actuators(result.scene, path, np.array([event.position]), np.array([event.time]), event.kind)[0])
         if event.kind in (EventKind.SLIPS, EventKind.DETACHES)
@@ -391,7 +389,7 @@ def test_actuators_of_events_are_those_of_each_at_its_own_time(tmp_path, monkeyp
     assert {0, 1} <= set(alone)
     for most in (500_000, 1):
         monkeypatch.setattr("coupling.margins.MAX_SHARES", most)
-        assert event_actuators(*given).tolist() == alone
+        assert event_actuators(result.scene, path).tolist() == alone
 
 
 def test_a_run_that_hit_its_limit_of_work_gets_no_trials_and_says_so():
@@ -404,7 +402,7 @@ def test_a_run_that_hit_its_limit_of_work_gets_no_trials_and_says_so():
 def test_the_actuator_of_an_event_is_that_of_the_margin_at_its_time():
     result = run_case(case_of(stroke=4e-6, frequency=4000))
     events, margins = result.trajectory.events, result.summary.margins
-    found = event_actuators(result.case, result.scene, result.trajectory, build_friction(result.case))
+    found = event_actuators(result.scene, result.loads)
     assert len(found) == len(events)
     slips = [k for k, event in enumerate(events) if event.kind is EventKind.SLIPS]
     assert slips and events[slips[0]].time == margins.slip.time and found[slips[0]] == margins.slip.actuator

@@ -17,8 +17,6 @@ from active_surface.views.pages.run_curves import _fewer, smooth_path
 from active_surface.views.pages.run_data import MAX_POINTS, run_data
 from active_surface.views.pages.run_page import motion, write_run_page
 from coupling import read_case, report, run_case
-from coupling.margins import margin_curves
-from coupling.part import build_friction
 from coupling.results.saved import read_run
 from coupling.scene import lifts_of
 from coupling.summary import summary_of
@@ -66,8 +64,7 @@ def test_a_page_has_margins_and_names_the_actuator_at_its_events(run, result):
     data = run_data(run)
     panels = {panel["label"]: panel for panel in data["curves"]["panels"]}
     assert {"Position", "Velocity", "Strokes", "Pull", "Friction"} < set(panels)
-    friction = build_friction(result.case)
-    curves = margin_curves(result.case, result.surface, result.trajectory, friction)
+    curves = result.margin_curves
     assert numbers(data["curves"]["times"][panels["Pull"]["time"]]) == pytest.approx(curves.time)
     assert numbers(panels["Pull"]["lines"][0]["values"]) == pytest.approx(curves.slip, rel=1e-6, nan_ok=True)
     slips = [k for k, event in enumerate(run.events) if event.kind is EventKind.SLIPS]
