@@ -98,7 +98,9 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     over_thickness = deflection / thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
     tipping = tipping_of(case, contact, friction)
+    # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
     first = _first_frequency(plate, shapes)
+    sag = part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force))))
     driven = [drive for drive in drives if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
@@ -128,7 +130,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         plate_rings=rings,
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=part_curvature(case, shapes.outline, surface, trajectory),
-        part_sag=part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
+        part_sag=sag,
     )
 
 
@@ -206,5 +208,6 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
-    with_part = plate.as_meshed().influence(np.concatenate([shapes.points, start]), springs)
+    meshed = plate if plate.tolerance is None else plate.as_meshed()
+    with_part = meshed.influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force
