@@ -27,7 +27,7 @@ from coupling.stretch import (
     new_moment,
     new_state,
 )
-from fem_plate.large_deflection import Forms
+from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
@@ -35,9 +35,16 @@ FloatArray = NDArray[np.float64]
 
 
 class Ringing(NamedTuple):
-    """A stretching plate with a modes that ring and n corrections that follow them, under N drives."""
+    """A stretching plate with a modes that ring and n corrections that follow them, under N drives.
 
-    forms: Forms  # of N + a drives, the heights and the modes, and n corrections
+    Its forms are of N + a lifts, the heights and the modes, and n corrections. The arrays after `forms` have what lifts
+    do to all S forms side by side, so that few long rows are added.
+    """
+
+    forms: Forms
+    pairs: FloatArray  # (P, S), each form's share of the products of two lifts, P = (N + a) (N + a + 1) / 2
+    mixed: FloatArray  # (N + a, S * n), of lifts and corrections
+    of_modes: FloatArray  # (R, a * (N + a + n)), the membrane's forms of modes with lifts and corrections
     square: FloatArray  # (a,) 1/s^2, omega^2
     drag: FloatArray  # (a,) 1/s, 2 zeta omega
     mass: FloatArray  # (a,), M, in the energy's unit over m^2/s^2
@@ -52,24 +59,39 @@ class Bench(NamedTuple):
     pieces: FloatArray  # (N, 6) m, of the drives, powers of the time from -1 to 1
     heights: FloatArray  # (3, N) m, or N of forces, the drives with two derivatives in time
     lifts: FloatArray  # (3, N + a), drives and modes with two derivatives
-    row: FloatArray  # (N + a,)
-    membrane_force: FloatArray  # (a,), against each mode
+    products: FloatArray  # (P,), of two lifts
+    of_modes: FloatArray  # (a * (N + a + n),), membrane forces times `Ringing.of_modes`
     corrections: FloatArray  # (n,), the corrections, as guessed or last found
+
+
+def ringing_of(plate: ReducedPlate, square: FloatArray, drag: FloatArray, mass: FloatArray, m: FloatArray) -> Ringing:
+    """The plate whose last drives are the a modes; m: (a, N) their participation."""
+    forms, count = plate.forms, m.shape[1]
+    i, j = np.triu_indices(plate.drive_count)
+    return Ringing(
+        forms,
+        np.where(i == j, 0.5, 1.0)[:, None] * forms.drives[:, i, j].T,
+        forms.mixed.transpose(1, 0, 2).reshape(plate.drive_count, -1),
+        plate.membrane[:, count : plate.drive_count].reshape(len(plate.membrane), -1),
+        square,
+        drag,
+        mass,
+        m,
+    )
 
 
 @kernel
 def new_bench(ringing: Ringing) -> Bench:
     """Room for it."""
     forms, count = ringing.forms, ringing.participation.shape[1]
-    both = count + len(ringing.square)
     return Bench(
         new_moment(forms),
         new_state(forms),
         np.zeros((count, ORDER)),
         np.zeros((3, count)),
-        np.zeros((3, both)),
-        np.zeros(both),
-        np.zeros(len(ringing.square)),
+        np.zeros((3, len(ringing.mixed))),
+        np.zeros(len(ringing.pairs)),
+        np.zeros(ringing.of_modes.shape[1]),
         np.zeros(len(forms.load)),
     )
 
@@ -93,22 +115,24 @@ def _enter_heights(bench: Bench, s: float, half: float) -> None:
 @kernel_device_no_arrays
 def _enter_lifts(ringing: Ringing, bench: Bench, count: int, orders: int) -> None:
     """What drives and modes do to the first `count` forms, with derivatives up to an order below `orders`."""
-    forms, moment, lifts, row = ringing.forms, bench.moment, bench.lifts, bench.row
-    both = len(row)
-    for r in range(count):
-        clear(row)
-        add_rows(row, 0, both, forms.drives[r], lifts[0], both)
-        moment.own[0, r] = 0.5 * dot(lifts[0], row)
-        if orders > 1:
-            moment.own[1, r] = dot(lifts[1], row)
-            moment.own[2, r] = dot(lifts[2], row)
-            clear(row)
-            add_rows(row, 0, both, forms.drives[r], lifts[1], both)
-            moment.own[2, r] += dot(lifts[1], row)
-        for order in range(orders):
-            mixed = moment.mixed[order, r]
-            clear(mixed)
-            add_rows(mixed, 0, len(mixed), forms.mixed[r], lifts[order], both)
+    moment, lifts, products = bench.moment, bench.lifts, bench.products
+    size, n = lifts.shape[1], len(bench.corrections)
+    for order in range(orders):
+        pair = 0
+        for i in range(size):
+            for j in range(i, size):
+                if order == 0:
+                    products[pair] = lifts[0, i] * lifts[0, j]
+                else:
+                    products[pair] = lifts[order, i] * lifts[0, j] + lifts[0, i] * lifts[order, j]
+                if order == 2:
+                    products[pair] += 2.0 * lifts[1, i] * lifts[1, j]
+                pair += 1
+        own, mixed = moment.own[order], moment.mixed_flat[order]
+        clear(own)
+        add_rows(own, 0, count, ringing.pairs, products, pair)
+        clear(mixed)
+        add_rows(mixed, 0, count * n, ringing.mixed, lifts[order], size)
 
 
 @kernel_device_no_arrays
@@ -120,33 +144,34 @@ def accelerate(
     q: FloatArray,
     q_t: FloatArray,
     out: FloatArray,
-    reuse_factor: bool,
+    near: bool,
+    exact: bool,
 ) -> int:
     """The modes' accelerations (a,) at s of an interval of 2 half [s]; returns what came of the corrections.
 
-    reuse_factor: keep the factor of the last Hessian for Newton's steps; the guess in the bench must be close.
+    near: whether the guess in the bench is close, so that the factor of the last Hessian serves.
+    exact: whether the corrections must be, and the factor that of the Hessian there.
     """
     forms, state, lifts, count = ringing.forms, bench.state, bench.lifts, len(bench.pieces)
+    c, of_modes, size = bench.corrections, bench.of_modes, bench.lifts.shape[1]
     _enter_heights(bench, s, half)
     for i in range(count):
         lifts[0, i] = bench.heights[0, i]
     for k in range(len(q)):
         lifts[0, count + k] = q[k]
     _enter_lifts(ringing, bench, forms.membranes, 1)
-    if reuse_factor:
-        outcome = follow_equilibrium(forms, bench.moment, state, bench.corrections)
+    if near:
+        outcome = follow_equilibrium(forms, bench.moment, state, c, exact)
     else:
-        outcome = find_equilibrium(forms, bench.moment, state, bench.corrections, 0.0)
-    clear(bench.membrane_force)
-    for r in range(forms.membranes):
-        force = state.values[r]
-        for k in range(len(q)):
-            own = dot(forms.drives[r, count + k], lifts[0]) + dot(forms.mixed[r, count + k], bench.corrections)
-            bench.membrane_force[k] += force * own
+        outcome = find_equilibrium(forms, bench.moment, state, c, 0.0)
+    clear(of_modes)
+    add_rows(of_modes, 0, len(of_modes), ringing.of_modes, state.values, forms.membranes)
+    width = size + len(c)
     for k in range(len(q)):
+        first = k * width
+        stretched = dot(of_modes[first : first + size], lifts[0]) + dot(of_modes[first + size : first + width], c)
         inertia = dot(ringing.participation[k], bench.heights[2])
-        stretched = bench.membrane_force[k] / ringing.mass[k]
-        out[k] = -ringing.square[k] * q[k] - ringing.drag[k] * q_t[k] - stretched - inertia
+        out[k] = -ringing.square[k] * q[k] - ringing.drag[k] * q_t[k] - stretched / ringing.mass[k] - inertia
     return outcome
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from coupling.ringing.forces import Bench, Ringing, accelerate, enter_pieces, fill_node
 from coupling.stretch import FINE, lay_piece
 from particle import kernel, kernel_device_no_arrays
-from particle.drives import DriveTable
+from particle.drives import DriveTable, quintic_end
 from particle.events import Tableau
 
 FloatArray = NDArray[np.float64]
@@ -41,7 +41,7 @@ def march(
     at, speed = np.zeros(own), np.zeros(own)
     fastest, worst = math.sqrt(ringing.square.max()), 0.0
     enter_pieces(table, begin, end, bench)
-    outcome = accelerate(ringing, bench, -1.0, half, q, q_t, rates[0], False)
+    outcome = accelerate(ringing, bench, -1.0, half, q, q_t, rates[0], False, True)
     fill_node(ringing, bench, q, q_t, rates[0], nodes[0])
     for n in range(steps):
         if outcome != FINE:
@@ -57,8 +57,9 @@ def march(
                 at[k], speed[k] = q[k] + h * moved, q_t[k] + h * gained
             for k in range(own):
                 speeds[stage, k] = speed[k]
-            _guess(nodes[n, :, own:], pair.c[stage] * h, bench.corrections)
-            outcome = max(outcome, accelerate(ringing, bench, s, half, at, speed, rates[stage], stage < stages))
+            _guess(nodes[max(n - 1, 0), :, own:], nodes[n, :, own:], pair.c[stage] * h, h, n > 0, bench.corrections)
+            last = stage == stages
+            outcome = max(outcome, accelerate(ringing, bench, s, half, at, speed, rates[stage], True, last))
         worst = max(worst, _error(pair, rates, speeds, h, fastest))
         q[:], q_t[:], rates[0, :] = at, speed, rates[stages]
         fill_node(ringing, bench, q, q_t, rates[0], nodes[n + 1])
@@ -66,10 +67,16 @@ def march(
 
 
 @kernel_device_no_arrays
-def _guess(node: FloatArray, time: float, out: FloatArray) -> None:
-    """The corrections a time [s] after a node."""
+def _guess(before: FloatArray, node: FloatArray, time: float, h: float, has_before: bool, out: FloatArray) -> None:
+    """The corrections a time [s] after a node: by the quintic from the node before it, h [s] earlier, if there is one."""
+    s = -time / h
     for j in range(len(out)):
-        out[j] = node[0, j] + time * (node[1, j] + 0.5 * time * node[2, j])
+        v, a = -h * node[1, j], h**2 * node[2, j]
+        out[j] = node[0, j] + s * (v + 0.5 * s * a)
+        if has_before:
+            v_before, a_before = -h * before[1, j], h**2 * before[2, j]
+            third, fourth, fifth = quintic_end(before[0, j] - node[0, j], v, v_before, a, a_before)
+            out[j] += s**3 * (third + s * (fourth + s * fifth))
 
 
 @kernel_device_no_arrays

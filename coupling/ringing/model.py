@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coupling.drives import fastest_acceleration, stroke_heights
 from coupling.progress import doing
-from coupling.ringing.forces import Ringing
+from coupling.ringing.forces import Ringing, ringing_of
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import Corrections, Response, StretchModel, equilibrium_at, keep_model, key_of, read_model
 from coupling.vibration import PIECES, ChosenModes, Damping, choose_modes, motion_of
@@ -66,8 +66,8 @@ class RingingModel(StretchModel):
         follows = ReducedPlate(plate.stiffness[count:, count:], plate.membrane, in_plane=plate.in_plane)
         omega = modes.omega[:count]
         ratio = self.damping(modes.frequencies[:count])
-        return Ringing(
-            follows.forms,
+        return ringing_of(
+            follows,
             omega**2,
             2 * ratio * omega,
             np.diag(plate.stiffness)[:count] / omega**2,

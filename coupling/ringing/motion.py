@@ -26,8 +26,10 @@ MAX_STEP_ERROR = 1e-9  # of the largest mode
 MAX_CHANGE = 1e-6  # of the largest acceleration: what all later passes still change
 MIN_LOSS = 1e-2  # of a mode's ringing, in a pass
 MAX_BLOCK = 512  # steps that are laid together
-MAX_STEPS = 4096  # whose nodes are held at a time, if they are not halved
-MAX_HALVINGS = 10  # of the steps
+MAX_STEPS = 4096  # whose nodes are kept at a time, if they are not made finer
+STEP_ORDER, PIECE_ORDER = 6, 4  # of their errors, at least
+SPARE = 1.02  # how much finer steps are than these ask for
+MAX_FINER, MAX_REFINEMENTS = 2.0, 10  # each, of steps that are too long
 MAX_PASSES = 200  # to a steady state; more where damping is low
 MIN_DECAY = 40.0  # zeta omega t after which nothing is left of the start
 MERGED = 1e-12  # of a period: a breakpoint that is its end
@@ -93,7 +95,7 @@ class _Walker:
         self._edges, self._rows, self._pieces = [np.zeros(1)], list[FloatArray](), 0
         self._largest = 0.0  # m, of a mode
         self._accelerations: list[float] = []  # m/s^2, the modes' largest in each part
-        self._over, self._loop, self._steps, self._finer = 0.0, -1, 0, 1
+        self._over, self._loop, self._steps, self._finer = 0.0, -1, 0, 1.0
 
     @property
     def largest_acceleration(self) -> float:
@@ -168,21 +170,24 @@ class _Walker:
     def _cross(self, begin: float, until: float, shift: float, state: _State) -> None:
         """Walk between two breakpoints [s], in steps fine enough for both motion and pieces."""
         width, own, guess = len(self._limits), len(state.q), self._bench.corrections.copy()
-        steps = 2 * self._finer * math.ceil((until - begin) * self._fastest / MAX_RADIANS / 2)
-        for _ in range(MAX_HALVINGS):
+        at_first = (until - begin) * self._fastest / MAX_RADIANS
+        for _ in range(MAX_REFINEMENTS):
+            steps, finer = 2 * math.ceil(self._finer * at_first / 2), MAX_FINER
             nodes = np.zeros((steps + 1, 3, width))
             q, q_t = state.q.copy(), state.q_t.copy()
             self._bench.corrections[:] = guess  # steps that are too long may have led astray
             outcome, error = march(self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes)
             largest = max(float(np.abs(nodes[:, 0, :own]).max()), self._largest)
-            if outcome == FINE and error <= MAX_STEP_ERROR * largest:
+            if outcome == FINE:
+                finer = _finer(error, MAX_STEP_ERROR * largest, STEP_ORDER)
+            if finer <= 1.0:
                 lengths, rows = np.zeros(steps, dtype=np.int64), np.zeros((steps, width, ORDER))
                 h = (until - begin) / steps
                 laid, over = lay_steps(nodes, h, self._limits, MAX_BLOCK, lengths, rows)
                 if over <= 1.0:
                     break
-            steps *= 2
-            self._finer *= 2
+                finer = _finer(over, 1.0, PIECE_ORDER)
+            self._finer *= finer
         else:
             what = "is not stable" if outcome == NOT_STABLE else "rings in a way that cannot be followed"
             raise ValueError(f"The stretching plate {what} at {begin + shift:g} s; reduce the strokes")
@@ -233,3 +238,10 @@ class _Walker:
             equilibria=12 * self._steps,
             period=None if loop is None else float(edges[-1] - edges[loop]),
         )
+
+
+def _finer(error: float, limit: float, order: int) -> float:
+    """How many times more steps an error of that order asks for to meet its limit; 1: it does."""
+    if error <= limit:
+        return 1.0
+    return float(min(MAX_FINER, SPARE * (error / limit) ** (1 / order))) if limit > 0 else MAX_FINER

@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 MAX_STEPS, CONVERGED = 60, 1e-10  # of Newton; a step over the largest correction
 SUFFICIENT, MIN_STEP = 1e-4, 1e-10  # the share of the slope by which the energy must fall; of a step
 ENERGY_ROUNDING = 1e-13  # of the energy's terms
-FOLLOWED, SLOW = 1e-9, 0.3  # with a kept factor: the last step; the most that a step may be of the one before
+FOLLOWED, SLOW = 1e-9, 0.3  # with a kept factor: the error left; the most that a step may be of the one before
 FINE, NOT_CONVERGED, NOT_STABLE = 0, 1, 2  # what can come of it
 
 
@@ -111,24 +111,48 @@ def find_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray, 
 
 
 @kernel_inlined
-def follow_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray) -> int:
-    """As `find_equilibrium`, near the last one that it found: the factor of that one's Hessian serves all steps."""
-    n, last = len(c), math.inf
+def follow_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray, exact: bool) -> int:
+    """As `find_equilibrium`, near the last one that it found: the factor of that one's Hessian serves all steps.
+
+    exact: whether to end with a step of Newton's, with the factor of its own Hessian; else c is good to FOLLOWED.
+    """
+    n, last, rate = len(c), math.inf, 1.0
     while True:
         _enter(forms, moment, state, c)
-        for i in range(n):
-            state.step[i] = -state.gradient[i]
-        _solve(state.factor, state.step)
-        length = largest = 0.0
-        for i in range(n):
-            length, largest = max(length, abs(state.step[i])), max(largest, abs(c[i]))
+        length, largest = _newton_step(state, c)
         if not length <= SLOW * last:
             return find_equilibrium(forms, moment, state, c, largest)
+        if last < math.inf:
+            rate = length / last
         for i in range(n):
             c[i] += state.step[i]
-        if length <= FOLLOWED * largest:
-            return FINE
+        if length * rate <= FOLLOWED * largest:
+            break
         last = length
+    if not exact:
+        for r in range(forms.membranes):
+            state.values[r] += dot(state.rows[r], state.step)
+        return FINE
+    _enter(forms, moment, state, c)
+    if not _factorise(forms, state, True):
+        return find_equilibrium(forms, moment, state, c, largest)
+    _newton_step(state, c)
+    for i in range(n):
+        c[i] += state.step[i]
+    _enter(forms, moment, state, c)
+    return FINE
+
+
+@kernel_device_no_arrays
+def _newton_step(state: State, c: FloatArray) -> tuple[float, float]:
+    """Find the step that the gradient and the factor ask for; its length, and that of c, by their largest entries."""
+    length = largest = 0.0
+    for i in range(len(c)):
+        state.step[i] = -state.gradient[i]
+    _solve(state.factor, state.step)
+    for i in range(len(c)):
+        length, largest = max(length, abs(state.step[i])), max(largest, abs(c[i]))
+    return length, largest
 
 
 @kernel_device_no_arrays
