@@ -68,7 +68,7 @@ def march(
 
 @kernel_device_no_arrays
 def _guess(before: FloatArray, node: FloatArray, time: float, h: float, has_before: bool, out: FloatArray) -> None:
-    """The corrections a time [s] after a node: by the quintic from the node before it, h [s] earlier, if there is one."""
+    """The corrections a time [s] after a node, by the quintic from the one before, h [s] earlier, if there is one."""
     s = -time / h
     for j in range(len(out)):
         v, a = -h * node[1, j], h**2 * node[2, j]
