@@ -1,7 +1,8 @@
 """Where compiled kernels are kept: a folder named by the hash of the package's sources, so that none can be stale.
 
 numba compares a kernel's own file only, and would go on with old code of the kernels that it calls. Kernels of rooms
-outside the package may call those of their room and of the package, and are kept by the hash of both.
+outside the package may call those of their room, of rooms that it imports them from, and of the package; they are kept
+by the hash of all these.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from uuid import uuid4
 import numba
 from numba.core import config, event
 from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
+from numba.core.dispatcher import Dispatcher
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 from numba.misc.appdirs import AppDirs
@@ -111,10 +113,21 @@ def _place(packages: tuple[Path, ...], prefix: str) -> Place:
 
 def place_of(kernel: Callable[..., Any]) -> Place:
     """Where a kernel is kept: with those of the package, or of the room outside it that has its file."""
-    room = Path(kernel.__code__.co_filename).parent
-    if room == PACKAGE or PACKAGE in room.parents:
-        return _place((PACKAGE,), PREFIX)
-    return _place((room, PACKAGE), f"{room.name}-{PREFIX}")
+    rooms = _rooms(kernel)
+    return _place((*rooms, PACKAGE), f"{rooms[0].name}-{PREFIX}" if rooms else PREFIX)
+
+
+def _rooms(kernel: Callable[..., Any]) -> list[Path]:
+    """The folders outside the package of the functions that a kernel may call, its own first."""
+    files: dict[str, Path] = {}
+    left = [kernel]
+    while left:
+        function = left.pop()
+        file = function.__code__.co_filename
+        if file not in files and PACKAGE not in Path(file).parents:
+            files[file] = Path(file).parent
+            left += [called.py_func for called in function.__globals__.values() if isinstance(called, Dispatcher)]
+    return list(dict.fromkeys(files.values()))
 
 
 class _Locator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]

@@ -121,6 +121,10 @@ def test_kernels_of_other_rooms_have_folders_of_their_own(tmp_path, monkeypatch)
     inside, outside = place(drive_piece), place(find_rates)
     assert inside.packages == (PACKAGE,)
     assert outside.packages == (PACKAGE.parent / "coupling" / "stretch", PACKAGE)
+    # Of all files of a room, as one may call what another one imports.
+    from coupling.ringing.march import march
+
+    assert set(place(march).packages) >= {PACKAGE.parent / "coupling" / room for room in ("ringing", "stretch")}
     assert inside.folder.name == f"kernels-{source_digest(PACKAGE)}"
     assert outside.folder.name == f"stretch-kernels-{source_digest(*outside.packages)}"
     # One kind of folders does not drive out the other.
