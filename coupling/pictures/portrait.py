@@ -25,7 +25,7 @@ from particle import AnyDrive, Event, EventKind, Rows, Samples, SegmentDrive
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES, MAX_SAMPLES = 4000, 100_000
+SAMPLES, MAX_SAMPLES = 1500, 100_000
 PER_CYCLE = 24  # samples, of the fastest drive
 MAX_DRIVES = 3  # drawn; of more, those that the margins name, or the one nearest to the start
 BATCH = 64  # times whose deflections are computed or read together
@@ -102,7 +102,7 @@ def _of_result(result: Result) -> Portrait:
     moment, end = deflected_most(scene, surface.deflection, result.frames), float(trajectory.time[-1])
     drives = [*scene.lifts, *scene.base]
     cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
-    samples = trajectory.at(np.linspace(0, end, int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))))
+    samples = trajectory.at(filled(trajectory.time, int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))))
     plate = None
     if scene.shapes is not None:
         shapes, heights = scene.moving_shapes, moving_heights(scene, np.array([moment]))
@@ -158,6 +158,14 @@ def _of_saved(run: SavedRun) -> Portrait:
         base,
         run.complete,
     )
+
+
+def filled(rows: FloatArray, count: int) -> FloatArray:
+    """The times of rows (n,) [s], which cost nothing, and where these are sparse some of `count` even ones."""
+    even = np.linspace(rows[0], rows[-1], count)
+    after = np.searchsorted(rows, even)
+    near = np.minimum(rows[after] - even, even - rows[np.maximum(after - 1, 0)])
+    return np.union1d(rows, even[near > (even[1] - even[0]) / 2])
 
 
 def _box(points: FloatArray) -> FloatArray:
