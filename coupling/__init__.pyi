@@ -20,9 +20,8 @@ from .files import (
     why as why,
 )
 from .progress import (
-    CountBar as CountBar,
+    Bar as Bar,
     Progress as Progress,
-    StageBar as StageBar,
     ProgressCallback as ProgressCallback,
     silent as silent,
     no_progress as no_progress,

@@ -1,4 +1,4 @@
-"""Progress: stages with a clock, or a count with its rate, on a terminal once the work has taken two seconds.
+"""Progress: stages, or many pieces of one stage, on a terminal once the work has taken two seconds.
 
 Where there is no terminal, as in a log, a line twice a minute says what is done and what is left.
 """
@@ -16,7 +16,7 @@ from typing import Any
 ProgressCallback = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
 Progress = Callable[[str], AbstractContextManager[ProgressCallback]]
 
-_open_bars: list[_Bar] = []
+_open_bars: list[Bar] = []
 _now = time.monotonic  # s
 
 PATIENCE = 2.0  # s of silence on a terminal
@@ -34,25 +34,31 @@ def silent(stage: str) -> AbstractContextManager[ProgressCallback]:
 
 
 def doing(text: str, share: float = 0.0) -> None:
-    """Say on the bars that are open what is being done, and how much of it is, at a point that knows none of them."""
+    """Show on the open bars what is being done, and how much of it is, at a point that knows none of them."""
     for bar in list(_open_bars):
         bar.show(text, share)
 
 
-class _Bar:
-    """A bar on the terminal's error stream after a while of silence; elsewhere a line there now and then."""
+class Bar:
+    """A bar on the terminal's error stream after a while of silence; elsewhere a line there now and then.
 
-    def __init__(self, total: int | None = None) -> None:
+    stages: how many there are; none: there is one, named by its pieces, whose count it shows with a rate and the time
+    left. Pieces of the first count were done before.
+    """
+
+    def __init__(self, stages: int | None = None) -> None:
         from rich import progress as rich
         from rich.console import Console
 
         console = Console(stderr=True)
         self._live = bool(sys.stderr) and sys.stderr.isatty() and not console.is_dumb_terminal
-        clock = [rich.TimeRemainingColumn(), "left"] if total is None else [rich.TimeElapsedColumn()]
+        clock = [rich.TimeElapsedColumn()] if stages else [rich.TimeRemainingColumn(), "left"]
         columns = [rich.SpinnerColumn(), rich.BarColumn(bar_width=20), rich.MofNCompleteColumn(), *clock]
         self._bar: Any = rich.Progress(*columns, "{task.description}", console=console, transient=True)
-        self._id = self._bar.add_task("", total=total)
-        self._announcing, self._ended = ExitStack(), threading.Event()
+        self._id = self._bar.add_task("", total=stages)
+        self._stages, self._stage = stages, ""
+        self._first: tuple[int, float] | None = None  # how many pieces were done before, and when [s] counting began
+        self._ending, self._ended = ExitStack(), threading.Event()
 
     @property
     def task(self) -> Any:
@@ -63,18 +69,58 @@ class _Bar:
         """Show what is being done, and how much of it is."""
         self._bar.update(self._id, description=f"{text}, {100 * share:.0f} %" if share else text)
 
-    def _line(self) -> str:
-        """What is done and what is left."""
-        raise NotImplementedError
-
-    def _start(self) -> None:
+    def __enter__(self) -> Progress:
         from particle import compilation_heard
 
-        self._announcing.enter_context(compilation_heard(self._announce))
+        self._ending.enter_context(compilation_heard(self._announce))
         self._since = _now()
         self._teller = threading.Thread(target=self._show_bar if self._live else self._write_lines, daemon=True)
         self._teller.start()
         _open_bars.append(self)
+        return self.stage
+
+    def __exit__(self, *_: object) -> None:
+        _open_bars.remove(self)
+        self._ending.close()
+        self._ended.set()
+        self._teller.join()
+        if self._live:
+            self._bar.stop()
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[ProgressCallback]:
+        """A stage, or the only one, by the name of its pieces; gives what counts these."""
+        self._stage, self._first = name, None
+        if self._stages:
+            self.show(name)
+        yield self._count
+        if self._stages:
+            self._bar.advance(self._id)
+
+    def _count(self, done: int, of: int) -> None:
+        first, self._first = self._first, self._first or (done, _now())
+        if self._stages:
+            self.show(f"{self._stage}: {done} of {of}")
+            return
+        if first is None:
+            self._bar.reset(self._id, completed=done, total=of)
+        rate = f", {self.task.speed:.0f}/s" if self.task.speed else ""
+        self._bar.update(self._id, completed=done)
+        self.show(f"{self._stage}; writing all" if done == of else self._stage + rate)
+
+    def _line(self) -> str:
+        """What is done and what is left."""
+        task = self.task
+        if self._stages:
+            line = f"{task.completed} of {task.total} stages done; {task.description}"
+            return line if self._first else line + _path_under_way()
+        if self._first is None:
+            return f"no {self._stage} yet" + (f"; {task.description}" if task.description else "")
+        (before, since), done = self._first, task.completed
+        line = f"{done} of {task.total} {task.description}"
+        if not before < done < task.total:
+            return line
+        return f"{line}, about {_clock((task.total - done) * (_now() - since) / (done - before))} left"
 
     def _show_bar(self) -> None:
         if not self._ended.wait(PATIENCE):
@@ -91,81 +137,15 @@ class _Bar:
         elif sys.stderr:
             print(COMPILING, file=sys.stderr, flush=True)
 
-    def __exit__(self, *_: object) -> None:
-        _open_bars.remove(self)
-        self._announcing.close()
-        self._ended.set()
-        self._teller.join()
-        if self._live:
-            self._bar.stop()
+
+def _path_under_way() -> str:
+    """How far the integrator is on a path, if it follows one."""
+    from common import range_text
+    from particle import under_way
+
+    path = under_way()
+    return "" if path is None else f"; path at {range_text(*path, 's', word='of')}"
 
 
 def _clock(seconds: float) -> str:
     return str(timedelta(seconds=round(seconds)))
-
-
-class StageBar(_Bar):
-    """A bar over known stages."""
-
-    _counts = False  # whether the stage has said how much of it is done
-
-    def __enter__(self) -> Progress:
-        self._start()
-        return self._stage
-
-    @contextmanager
-    def _stage(self, stage: str) -> Iterator[ProgressCallback]:
-        self.show(stage)
-        self._counts = False
-
-        def tell(done: int, of: int) -> None:
-            self._counts = True
-            self.show(f"{stage}: {done} of {of}")
-
-        yield tell
-        self._bar.advance(self._id)
-
-    def _line(self) -> str:
-        from common import unit_for
-        from particle import under_way
-
-        path = under_way()
-        line = f"{self.task.completed} of {self.task.total} stages done; {self.task.description}"
-        if path is None or self._counts:
-            return line
-        unit = unit_for(path[1], "s")
-        return f"{line}; path at {path[0] * unit.per_si:.3g} of {path[1] * unit.per_si:.3g} {unit.name}"
-
-
-class CountBar(_Bar):
-    """A bar over many pieces of one kind, with how many are done a second and the time left.
-
-    Those of the first count were done before.
-    """
-
-    def __init__(self, pieces: str) -> None:
-        super().__init__()
-        self._pieces = pieces
-        self._first: tuple[int, float] | None = None  # how many were done before, and when [s] counting began
-
-    def __enter__(self) -> ProgressCallback:
-        self._start()
-        return self._tell
-
-    def _tell(self, done: int, of: int) -> None:
-        if self._first is None:
-            self._bar.reset(self._id, completed=done, total=of)
-            self._first = done, _now()
-        rate = f"{self._pieces}, {self.task.speed:.0f}/s" if self.task.speed else self._pieces
-        self._bar.update(self._id, completed=done)
-        self.show(f"{self._pieces}; writing all" if done == of else rate)
-
-    def _line(self) -> str:
-        task = self.task
-        if self._first is None:
-            return f"no {self._pieces} yet" + (f"; {task.description}" if task.description else "")
-        (before, since), done = self._first, task.completed
-        line = f"{done} of {task.total} {task.description}"
-        if not before < done < task.total:
-            return line
-        return f"{line}, about {_clock((task.total - done) * (_now() - since) / (done - before))} left"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -38,22 +39,18 @@ Overwrite = Annotated[bool, option("Replace an earlier result.")]
 Threads = Annotated[int | None, option("Paths found at a time [one a processor].", "-t", type=POSITIVE)]
 
 
-def stages(count: int) -> AbstractContextManager[Progress]:
-    """A bar over so many stages, unless the command is quiet."""
-    from coupling import StageBar, silent
+def stages(count: int | None) -> AbstractContextManager[Progress]:
+    """A bar over so many stages, or over the pieces of one, unless the command is quiet."""
+    from coupling import Bar, silent
 
-    return nullcontext(silent) if _is_quiet() else StageBar(count)
+    return nullcontext(silent) if click.get_current_context().params["quiet"] else Bar(count)
 
 
-def counted(pieces: str) -> AbstractContextManager[ProgressCallback]:
+@contextmanager
+def counted(pieces: str) -> Iterator[ProgressCallback]:
     """A bar over pieces of a kind, unless the command is quiet."""
-    from coupling import CountBar, no_progress
-
-    return nullcontext(no_progress) if _is_quiet() else CountBar(pieces)
-
-
-def _is_quiet() -> bool:
-    return bool(click.get_current_context().params["quiet"])
+    with stages(None) as bar, bar(pieces) as tell:
+        yield tell
 
 
 def check_free(file: Path, overwrite: bool) -> None:

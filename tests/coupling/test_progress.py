@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from coupling import build_scene, progress, stage_count
-from coupling.progress import CountBar, StageBar, doing, silent
+from coupling.progress import Bar, doing, silent
 from particle import ConstantFriction, Micropart, path, platform_surface, simulate
 
 
@@ -18,7 +18,7 @@ def terminal(monkeypatch):
 
 
 def test_a_bar_of_stages_reads_what_is_being_done(terminal):
-    with StageBar(2) as progress:
+    with Bar(2) as progress:
         task = progress.__self__.task
         with progress("Solving"):
             doing("stretching plate: 1 full solution, error 3e-2", 0.0)
@@ -29,7 +29,7 @@ def test_a_bar_of_stages_reads_what_is_being_done(terminal):
 
 
 def test_a_count_begins_after_what_is_done_before_it(terminal):
-    with CountBar("paths") as tell:
+    with Bar() as bar, bar("paths") as tell:
         task = tell.__self__.task
         doing("stretching plate: 7 full solutions, error 2e-4", 0.4)
         assert task.description == "stretching plate: 7 full solutions, error 2e-4, 40 %"
@@ -66,7 +66,7 @@ def logged(monkeypatch):
 
 def test_without_a_terminal_lines_say_which_stages_are_done_and_left(monkeypatch):
     log = logged(monkeypatch)
-    with StageBar(3) as stages:
+    with Bar(3) as stages:
         with stages("Solving"):
             assert log.next_line() == "0:00:00  0 of 3 stages done; Solving"
         with stages("Following") as tell:
@@ -93,7 +93,7 @@ def test_a_run_has_as_many_stages_as_it_counts(ran, kind):
 def test_without_a_terminal_lines_count_pieces_and_estimate_the_time_left(monkeypatch):
     log = logged(monkeypatch)
     now = [0.0]
-    with CountBar("paths") as tell:
+    with Bar() as bar, bar("paths") as tell:
         monkeypatch.setattr(progress, "_now", lambda: now[0])
         assert log.next_line().endswith("  no paths yet")
         doing("stretching plate: 7 full solutions, error 2e-4", 0.4)
@@ -117,7 +117,7 @@ def test_without_a_terminal_lines_say_how_far_a_single_path_is(monkeypatch):
 
     monkeypatch.setattr(path, "march", slow)
     inputs = platform_surface(size=1e-3), Micropart(2e-9, (0.0, 0.0)), ConstantFriction(2e-9), 0.04
-    with StageBar(2) as stages:
+    with Bar(2) as stages:
         with stages("Following the part"):
             simulate(*inputs)
         with stages("Following the parts") as tell:
@@ -130,6 +130,6 @@ def test_without_a_terminal_lines_say_how_far_a_single_path_is(monkeypatch):
 def test_nothing_is_printed_in_a_short_time_where_there_is_no_terminal(monkeypatch):
     errors = io.StringIO()
     monkeypatch.setattr(sys, "stderr", errors)
-    with CountBar("paths"):
+    with Bar() as bar, bar("paths"):
         doing("stretching plate: 7 full solutions, error 2e-4", 0.4)
     assert not errors.getvalue()

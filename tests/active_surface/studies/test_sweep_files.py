@@ -19,7 +19,7 @@ from active_surface.studies.record import COLUMNS, new_records
 from active_surface.studies.sweep_file import keys_of
 from active_surface.studies.sweep_table import sweep_table
 from coupling import environment as versions
-from coupling.progress import CountBar
+from coupling.progress import Bar
 
 pytestmark = pytest.mark.usefixtures("without_pictures")
 
@@ -222,14 +222,12 @@ def test_the_rate_of_a_resumed_sweep_leaves_out_what_was_there(monkeypatch):
     clock = [0.0]
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    counted = CountBar("paths")
+    counted = Bar()
     monkeypatch.setattr(counted._bar, "get_time", lambda: clock[0])
-    monkeypatch.setattr(counted, "_start", lambda: None)
-    tell = counted.__enter__()
-    for second, done in enumerate((900, 910, 920, 930)):
-        clock[0] = float(second)
-        tell(done, 1000)
-    (task,) = counted._bar.tasks
-    assert task.description == "paths, 10/s" and task.time_remaining == 7
-    tell(1000, 1000)
-    assert task.description == "paths; writing all"
+    with counted as bar, bar("paths") as tell:
+        for second, done in enumerate((900, 910, 920, 930)):
+            clock[0] = float(second)
+            tell(done, 1000)
+        assert counted.task.description == "paths, 10/s" and counted.task.time_remaining == 7
+        tell(1000, 1000)
+        assert counted.task.description == "paths; writing all"
