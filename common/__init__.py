@@ -1,4 +1,4 @@
-"""What all packages share: drawing, SI prefixes, and checks of HDF5 files."""
+"""What all packages share: drawing, the wording of quantities, and checks of HDF5 files."""
 
 import lazy_loader
 

@@ -19,9 +19,13 @@ from .hdf5 import (
     survives as survives,
 )
 from .plotting import draw as draw, notebook_html as notebook_html
-from .prefixes import (
+from .wording import (
     NOTHING as NOTHING,
     Unit as Unit,
+    count as count,
+    joined as joined,
+    percent as percent,
+    quantity as quantity,
     quantity_text as quantity_text,
     range_text as range_text,
     unit_for as unit_for,

@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
-from common.prefixes import unit_for
+from common.wording import unit_for
 
 FloatArray = NDArray[np.float64]
 

@@ -11,10 +11,10 @@ from active_surface.steering.knobs import Stop
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
+from common import joined
 from coupling.case import ActuatorCase, amplitude
-from coupling.report import MICRO, joined
 
-MILLI = 1e3
+MICRO, MILLI = 1e6, 1e3
 WIDER = 2.0  # times a bound: what a hint proposes
 KEYS = ("frequency", "stroke", "delay", "cycles")
 

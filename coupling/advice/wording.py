@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from common import joined, percent, quantity
 from coupling.advice.trials import Trial, no_advice
 from coupling.case import (
     Case,
@@ -19,7 +20,7 @@ from coupling.case import (
 )
 from coupling.drives import travel
 from coupling.plate_figures import MAX_STRAIN
-from coupling.report import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, MICRO, in_percent, joined, percent, quantity
+from coupling.report import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, about
 from coupling.result import Result
 from coupling.summary import PlateSummary, Summary
 from particle import Drive
@@ -74,7 +75,7 @@ def advice_text(result: Result, trial: Trial | None) -> str:
         own = _few([trial.frequency * drive.frequency for drive in drives], "Hz")
         times = " and all times of the drives divided alike" if delayed else ""
         changes.append(f"{trial.frequency:g} times the frequency{own}{times}")
-    place = "" if trial.place is None else " from ({:g}, {:g}) um".format(*(MICRO * c for c in trial.place))
+    place = "" if trial.place is None else " from ({:g}, {:g}) um".format(*(1e6 * c for c in trial.place))
     changed = f" with {joined(changes)}" if changes else ""
     speed = quantity(trial.distance / trial.duration, "m/s", 2)
     return (
@@ -92,9 +93,9 @@ def _beyond(s: Summary, trial: Trial) -> str:
     if s.theory == "linear" and over > MAX_DEFLECTION:
         out.append(f"linear theory at {over:.2g} times the thickness")
     if strain > MAX_STRAIN:
-        out.append(f"{in_percent(strain)} of strain")
+        out.append(f"{percent(strain)} of strain")
     if error > MAX_QUASI_STATIC_ERROR:
-        out.append(f"an acceleration error of {percent(error)}")
+        out.append(f"an acceleration error of {about(error)}")
     if s.load_unbounded and trial.smallest_load < 0:
         out.append(f"a load of {quantity(trial.smallest_load, 'N')}, at which the plate would have to pull at it")
     return f", with {joined(out)}" if out else ""

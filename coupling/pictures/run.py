@@ -122,8 +122,8 @@ def _draw_column(
 
 def _align_labels(panels: Sequence[Axes]) -> None:
     """Put the labels at the left of panels one below the other; `Figure.align_ylabels` takes ten times as long."""
-    axes = [panel.yaxis for panel in panels]
-    longest = max(len(text) for axis in axes for text in axis.major.formatter.format_ticks(axis.get_majorticklocs()))
+    ticks = [(panel.yaxis.get_major_formatter(), panel.yaxis.get_majorticklocs().tolist()) for panel in panels]
+    longest = max(len(text) for formatter, places in ticks for text in formatter.format_ticks(places))
     for panel in panels:
         left = ScaledTranslation(-(LETTER * longest + PADS) / 72, 0, panel.figure.dpi_scale_trans)
         panel.yaxis.set_label_coords(0, 0.5, panel.transAxes + left)

@@ -1,6 +1,5 @@
 """The report of a run: what the device is, the lines that the command prints, and its warnings."""
 
 from coupling.report.device import device
-from coupling.report.lines import LIFTS, PULLS, lines, margin_lines, trust
-from coupling.report.warnings import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, warnings
-from coupling.report.wording import MICRO, in_percent, joined, percent, quantity, with_micro_signs
+from coupling.report.lines import LIFTS, PULLS, lines, margin_lines, trust, with_micro_signs
+from coupling.report.warnings import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, about, warnings

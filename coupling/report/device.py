@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from common import quantity_text
+from common import count, joined, quantity_text
 from coupling.case import (
     AnnulusCase,
     Case,
@@ -20,7 +20,6 @@ from coupling.case import (
     RectangleCase,
     RegularPolygonCase,
 )
-from coupling.report.wording import count, joined
 
 GRAMS: Final = 1e3  # in a kg
 HELD: Final = {"clamped": "clamped", "simply-supported": "simply supported", "free": "free"}

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from common import quantity_text
+from common import Unit, count, percent, quantity, quantity_text
 from coupling.borders import BEFORE, LEAST, RANGE, Thresholds
 from coupling.case import INERTIA
 from coupling.margins import Margin
 from coupling.measured import MotionFit
 from coupling.plate_figures import StretchError, VibrationFigures
-from coupling.report.warnings import MAX_QUASI_STATIC_SHARE
-from coupling.report.wording import MICRO, MILLI, by_theory, count, in_percent, percent, quantity, unit_of
+from coupling.report.warnings import MAX_QUASI_STATIC_SHARE, about, by_theory
 from coupling.summary import PlateSummary, Summary
 from particle import Outcome
 
@@ -20,6 +20,9 @@ MAX_LISTED = 8  # jumps of a measured motion
 NONE = 1e-9  # of what friction holds: rounding
 PULLS: Final = "adds most to the pull"
 LIFTS: Final = "takes most off the load"
+MICRO, MILLI = 1e6, 1e3
+MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)")
+"""The letter u of "2 um", which terminals can print, where it stands for the prefix."""
 SLIPS = 1 - 1e-6  # of what friction holds: rounding must not decide whether it slips
 
 
@@ -34,9 +37,19 @@ def trust(summary: Summary) -> str:
     return "; ".join(text for _, text in _trust(summary))
 
 
+def with_micro_signs(text: str) -> str:
+    """A text of the report as pages and pictures have it, "2.3 µm" for "2.3 um"."""
+    return MICRO_UNITS.sub("\N{MICRO SIGN}", text)
+
+
+def _unit(s: Summary) -> Unit:
+    """The unit of length in which the path has handy numbers."""
+    return Unit("um", MICRO) if s.path_length < 0.01 else Unit("mm", MILLI) if s.path_length < 1 else Unit("m", 1.0)
+
+
 def _outcome(s: Summary) -> list[tuple[str, str]]:
     rest = "" if s.at_rest_since is None else f" At rest since {s.at_rest_since * MILLI:.3f} ms."
-    unit, per_metre = unit_of(s)
+    unit, per_metre = _unit(s)
     x, y = (c * per_metre for c in s.end_position)
     cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms"
     where = "" if s.origin == "the plate" else f", counted from {s.origin}"
@@ -71,7 +84,7 @@ def _trust(s: Summary) -> list[tuple[str, str]]:
     ledger = f"the energy ledger closes to {s.energy_balance:.1e} of its largest entry"
     if not isinstance(s, PlateSummary):
         return [("trust", f"{_path_error(s)}; {ledger}")]
-    strain = "" if s.largest_strain is None else f", strain {in_percent(s.largest_strain)}{by_theory(s)}"
+    strain = "" if s.largest_strain is None else f", strain {percent(s.largest_strain)}{by_theory(s)}"
     return [
         ("trust", f"{_path_error(s)}; {ledger}"),
         (
@@ -96,13 +109,13 @@ def _loads(s: Summary) -> list[str]:
 def _theory(s: PlateSummary) -> str:
     if s.linear_path_error is None:
         return "von Karman's theory"
-    return f"path error of linear theory {percent(s.linear_path_error)}"
+    return f"path error of linear theory {about(s.linear_path_error)}"
 
 
 def _path_error(s: Summary) -> str:
     closer = "100 times tighter" if s.scheme == "events" else "with half the time step"
     events = "" if s.same_events else ", which has other events"
-    unit, per_metre = unit_of(s)
+    unit, per_metre = _unit(s)
     return f"the end point moves by {s.path_error * per_metre:.1e} {unit} in a run {closer}{events}"
 
 
@@ -115,7 +128,7 @@ def _dynamics(s: PlateSummary) -> str:
         dynamics = "it rings where a drive jumps"
     else:
         remedy = f" ({INERTIA} has none)" if s.can_vibrate and s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
-        dynamics = f"quasi-static error of the acceleration {percent(s.quasi_static_error)}{remedy}"
+        dynamics = f"quasi-static error of the acceleration {about(s.quasi_static_error)}{remedy}"
     return f"first frequency, actuators held: {quantity_text(s.first_frequency, 'Hz', 4)}; {dynamics}"
 
 
@@ -128,7 +141,7 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
         texts.append(_contact(s, margins.contact))
     elif margins.smallest_load < 0:
         texts.append(
-            f"contact: the load falls to {_force(margins.smallest_load)}, which only a law without pull-off bears"
+            f"contact: the load falls to {quantity(margins.smallest_load, 'N')}, which only a law without pull-off bears"
         )
     rows = [("margins" if n == 0 else "", text) for n, text in enumerate(texts)]
     return rows if s.thresholds is None else [*rows, ("thresholds", threshold_text(s.thresholds))]
@@ -145,19 +158,17 @@ def _slip(s: Summary, margin: Margin) -> str:
 def _contact(s: Summary, margin: Margin) -> str:
     if margin.value <= 0:
         return f"contact: comes off {_when(s, margin, LIFTS)}"
-    scale = f"{'pull-off force' if s.margins.by_pull_off else 'weight'} {_force(s.margins.scale)}"
-    return f"contact: {_force(margin.value * s.margins.scale)} from coming off ({scale}) {_when(s, margin, LIFTS)}"
+    scale = f"{'pull-off force' if s.margins.by_pull_off else 'weight'} {quantity(s.margins.scale, 'N')}"
+    return (
+        f"contact: {quantity(margin.value * s.margins.scale, 'N')} from coming off ({scale}) {_when(s, margin, LIFTS)}"
+    )
 
 
 def _when(s: Summary, margin: Margin, does: str) -> str:
-    unit, per_metre = unit_of(s)
+    unit, per_metre = _unit(s)
     x, y = (c * per_metre for c in margin.position)
     by = "" if margin.actuator is None else f"; actuator {margin.actuator} {does}"
     return f"at {round(margin.time * MILLI, 9):.4g} ms, ({x:.4g}, {y:.4g}) {unit}{by}"
-
-
-def _force(force: float) -> str:
-    return quantity(force, "N")
 
 
 def threshold_text(t: Thresholds) -> str:
@@ -265,5 +276,5 @@ def _range(ratios: Sequence[float]) -> str:
 
 
 def _top_face(share: float) -> str:
-    added = f"{in_percent(share)} of" if share < 2 else f"{share:.3g} times"
+    added = f"{percent(share)} of" if share < 2 else f"{share:.3g} times"
     return f"top face and centre of mass add {added} the mid-plane's pull on the part"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from common import count, percent, quantity
 from coupling.case import INERTIA, VON_KARMAN
 from coupling.outlook import MAX_FREQUENCY
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
-from coupling.report.wording import MICRO, MILLI, by_theory, count, in_percent, percent, quantity
 from coupling.summary import PlateSummary, Summary
 
 # The model holds to about a per cent up to these.
@@ -29,6 +29,16 @@ def warnings(summary: Summary) -> list[str]:
     """The limits of the model and of the numerics that the run passes."""
     texts = [*_of_numerics(summary), *_of_measurement(summary), *_of_contact(summary), *_of_scheme(summary)]
     return [*_of_solver(summary), *texts, *_of_model(summary)] if isinstance(summary, PlateSummary) else texts
+
+
+def about(share: float) -> str:
+    """A share that is estimated, from formulas that hold for small ones."""
+    return "more than 50 %" if share > 0.5 else f"about {100 * share:.2g} %"
+
+
+def by_theory(s: PlateSummary) -> str:
+    """By which theory a strain is found, where another theory would find another."""
+    return " by linear theory" if s.theory == "linear" else ""
 
 
 def _of_numerics(s: Summary) -> Iterator[str]:
@@ -60,7 +70,7 @@ def _of_scheme(s: Summary) -> Iterator[str]:
         )
     if (jump := _jump(s)) is not None:
         yield (
-            f"A drive's velocity jumps at {jump * MILLI:g} ms. Fixed steps leave out the impact, also in the energy "
+            f"A drive's velocity jumps at {jump * 1e3:g} ms. Fixed steps leave out the impact, also in the energy "
             'ledger: the part\'s velocity jumps with the surface; scheme = "events" has the impact.'
         )
 
@@ -74,7 +84,7 @@ def _of_measurement(s: Summary) -> Iterator[str]:
     gaps = {fit.longest_step: fit.gaps for fit in s.motion_fits if fit.gaps}
     for longest, gaps_of_it in gaps.items():
         yield (
-            f"The measured motion has {count(gaps_of_it, 'gap')}, up to {longest * MILLI:.3g} ms without a sample: "
+            f"The measured motion has {count(gaps_of_it, 'gap')}, up to {longest * 1e3:.3g} ms without a sample: "
             "there it is as smooth as elsewhere, and an impact stays unseen."
         )
     for name in dict.fromkeys(name for fit in s.motion_fits for name in fit.ignored):
@@ -90,7 +100,7 @@ def _of_contact(s: Summary) -> Iterator[str]:
     if s.noise_pull is not None and s.noise_pull > MAX_NOISE_PULL:
         noise = max(fit.noise for fit in s.motion_fits)
         yield (
-            f"Noise of {noise * MICRO:.2g} um in the measured motion alone pulls the part by {s.noise_pull:.2g} times "
+            f"Noise of {noise * 1e6:.2g} um in the measured motion alone pulls the part by {s.noise_pull:.2g} times "
             "what friction holds (root mean square): without plate.smoothing, or with a larger one, less noise is left."
         )
     if s.load_unbounded and s.margins.smallest_load < 0:
@@ -129,7 +139,7 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
         remedy = f" {VON_KARMAN} in [plate] has the plate stretch." if far else ""
         yield (
             f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
-            f"holds to about {MAX_DEFLECTION}. Expect a path error of {percent(s.linear_path_error)}.{remedy}"
+            f"holds to about {MAX_DEFLECTION}. Expect a path error of {about(s.linear_path_error)}.{remedy}"
         )
     if s.largest_slope > MAX_SLOPE:
         remedy = "; smaller strokes or a wider plate reduce it" if s.theory == "von-karman" else ""
@@ -138,13 +148,13 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
         )
     if s.largest_strain is not None and s.largest_strain > MAX_STRAIN:
         yield (
-            f"The plate is strained by {in_percent(s.largest_strain)}{by_theory(s)}; silicon breaks near 1 %, "
+            f"The plate is strained by {percent(s.largest_strain)}{by_theory(s)}; silicon breaks near 1 %, "
             f"where {100 * MAX_STRAIN:g} % is prudent, and metals yield below that."
         )
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:
         yield (
             f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the quasi-static model holds up "
-            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {percent(s.quasi_static_error)}."
+            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {about(s.quasi_static_error)}."
             + (f" {INERTIA} in [plate] has the plate vibrate." if s.can_vibrate else "")
         )
     if s.plate_rings:

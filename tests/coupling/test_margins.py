@@ -10,6 +10,7 @@ import pytest
 from sweeps import DISC, read_text
 from sweeps import PLATE as OF_TWO
 
+from common import quantity
 from coupling import report, run_case
 from coupling.advice import Setting, Trial, Trials, advice_text, advise, advised_case, no_advice
 from coupling.borders import begins, why_none
@@ -31,7 +32,6 @@ from coupling.case import (
     with_index,
 )
 from coupling.margins import PathLoads, _actuators, event_actuators, margins_of
-from coupling.report.wording import quantity
 from coupling.run import build_friction, follow_part
 from coupling.summary import summary_of
 from particle import Drive, EventKind, Outcome, State

@@ -13,6 +13,7 @@ from active_surface.studies.pictures import Findings, Selection
 from active_surface.views.pages.page_file import notes_of, rows_of, write_page
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.sweep_paths import Paths, find_paths, spread, usual_count
+from common import joined
 from coupling import ProgressCallback, no_progress, report
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def write_study_page(
     starts = np.stack([dataset[f"start_{c}"].values.ravel()[numbers] for c in "xy"], axis=-1)
     sweep = Sweep(study, dataset)
     fixed = ", ".join(f"{name} = {text}" for name, text in selection.fixed.items())
-    title = f"A sweep of {report.joined([axis.name for axis in study.points.axes])}"
+    title = f"A sweep of {joined([axis.name for axis in study.points.axes])}"
     texts = {
         "name": escape(study.name),
         "title": escape(title),

@@ -1,7 +1,8 @@
-"""SI prefixes: the unit in which numbers are easiest to read."""
+"""Wording: how texts and pictures write quantities with SI prefixes, shares, counts and lists."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -39,8 +40,29 @@ def quantity_text(value: float, si: str, digits: int = 3) -> str:
     return f"{float(f'{value * unit.per_si:.{digits}g}'):g} {unit.name}"  # `g` alone turns 250 into 2.5e+02
 
 
+def quantity(value: float, si: str, digits: int = 3) -> str:
+    """A value [si] as `quantity_text` writes it, but in letters of ASCII, as in case files: "12.3 um"."""
+    return quantity_text(value, si, digits).replace("\N{MICRO SIGN}", "u")
+
+
 def range_text(low: float, high: float, si: str, digits: int = 3, word: str = "to") -> str:
     """Two values [si] and a word between them, such as "12.3 to 250 µm" or "900 Hz to 1.2 kHz"."""
     texts = [quantity_text(value, si, digits) for value in (low, high)]
     (number, its_unit), unit = texts[0].split(" "), texts[1].split(" ")[1]
     return f"{number if its_unit == unit else texts[0]} {word} {texts[1]}"
+
+
+def percent(share: float) -> str:
+    """A share with two digits, such as "0.51 %"."""
+    value = 100 * share
+    return f"{value:.2g} %" if value < 99.5 else f"{value:.0f} %"
+
+
+def count(number: int, noun: str) -> str:
+    """A number of things, such as "1 slip" or "3 slips"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def joined(words: Sequence[str]) -> str:
+    """Words as a list in a sentence: 0, 2 and 3."""
+    return " and ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else words[0]
