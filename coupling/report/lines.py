@@ -140,9 +140,8 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
     if margins.contact is not None:
         texts.append(_contact(s, margins.contact))
     elif margins.smallest_load < 0:
-        texts.append(
-            f"contact: the load falls to {quantity(margins.smallest_load, 'N')}, which only a law without pull-off bears"
-        )
+        load = quantity(margins.smallest_load, "N")
+        texts.append(f"contact: the load falls to {load}, which only a law without pull-off bears")
     rows = [("margins" if n == 0 else "", text) for n, text in enumerate(texts)]
     return rows if s.thresholds is None else [*rows, ("thresholds", threshold_text(s.thresholds))]
 
@@ -158,10 +157,9 @@ def _slip(s: Summary, margin: Margin) -> str:
 def _contact(s: Summary, margin: Margin) -> str:
     if margin.value <= 0:
         return f"contact: comes off {_when(s, margin, LIFTS)}"
-    scale = f"{'pull-off force' if s.margins.by_pull_off else 'weight'} {quantity(s.margins.scale, 'N')}"
-    return (
-        f"contact: {quantity(margin.value * s.margins.scale, 'N')} from coming off ({scale}) {_when(s, margin, LIFTS)}"
-    )
+    left, scale = (quantity(force, "N") for force in (margin.value * s.margins.scale, s.margins.scale))
+    over = "pull-off force" if s.margins.by_pull_off else "weight"
+    return f"contact: {left} from coming off ({over} {scale}) {_when(s, margin, LIFTS)}"
 
 
 def _when(s: Summary, margin: Margin, does: str) -> str:
