@@ -41,6 +41,8 @@ def run(
 @command
 def check(file: Path) -> Answer:
     """Report every mistake in FILE: a case, a study or an aim."""
+    from common import count
+
     kind = kind_of(file)
     figures: dict[str, Any]
     warnings: list[str] = []
@@ -48,19 +50,19 @@ def check(file: Path) -> Answer:
         from active_surface.studies import read_study
 
         paths = len(read_study(file).points)
-        figures, text = {"paths": paths}, f"a study of {_counted(paths, 'path')}"
+        figures, text = {"paths": paths}, f"a study of {count(paths, 'path')}"
     elif kind == "aim":
         from active_surface.steering import read_settings
 
         case, _, target = read_settings(file, True)
         actuators = len(case.actuators)
         figures = {"actuators": actuators, "target": target}
-        text = f"an aim of {case.name}, {_counted(actuators, 'actuator')}"
+        text = f"an aim of {case.name}, {count(actuators, 'actuator')}"
     else:
         case = read(file)
         warnings, actuators = _warnings(case), len(case.actuators)
         figures = {"actuators": actuators, "duration": case.run.duration}
-        text = f"{_counted(actuators, 'actuator') if actuators else 'a platform'}, {case.run.duration * 1e3:g} ms"
+        text = f"{count(actuators, 'actuator') if actuators else 'a platform'}, {case.run.duration * 1e3:g} ms"
     figures = {"file": str(file), "mistakes": [], **figures}
     return Answer(figures, [(f"{file}: fine; {text}", "")], warnings)
 
@@ -84,10 +86,6 @@ def _warnings(case: Case) -> list[str]:
 
         warnings += limit_warnings(case)
     return warnings
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"
 
 
 @command

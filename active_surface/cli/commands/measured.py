@@ -43,6 +43,7 @@ def influence(
     parsed = read(case)
     still, following = numbers_of(dead, "--dead"), numbers_of(passive, "--passive")
     _check(parsed, layout, {"--dead": still, "--passive": following}, actuator)
+    from common import count
     from coupling.scene import actuator_stiffness, build_plate
     from fem_plate import save_influence
 
@@ -56,8 +57,8 @@ def influence(
         fits: Any = {} if layout == ARRAYS else {"layout": layout, "dead": still + following, "actuator": actuator}
         save_influence(file, shapes, pixels, **fits)
     figures = {"layout": layout, "actuators": len(parsed.actuators), "dead": still, "passive": following}
-    count = 1 if layout == "proper" else len(parsed.actuators)
-    lines = [("functions", f"of {count} actuator{'s' * (count != 1)}, layout {layout}")]
+    of = count(1 if layout == "proper" else len(parsed.actuators), "actuator")
+    lines = [("functions", f"of {of}, layout {layout}")]
     if still or following:
         lines.append(("dead", f"standing still {still or 'none'}; following passively {following or 'none'}"))
     return Answer(figures, lines, files=[file])
