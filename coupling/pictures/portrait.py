@@ -102,7 +102,8 @@ def _of_result(result: Result) -> Portrait:
     moment, end = deflected_most(scene, surface.deflection, result.frames), float(trajectory.time[-1])
     drives = [*scene.lifts, *scene.base]
     cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
-    samples = trajectory.at(filled(trajectory.time, int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))))
+    count = int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))
+    samples = trajectory.at(even_times(trajectory.time, count, trajectory.events))
     plate = None
     if scene.shapes is not None:
         shapes, heights = scene.moving_shapes, moving_heights(scene, np.array([moment]))
@@ -160,12 +161,14 @@ def _of_saved(run: SavedRun) -> Portrait:
     )
 
 
-def filled(rows: FloatArray, count: int) -> FloatArray:
-    """The times of rows (n,) [s], which cost nothing, and where these are sparse some of `count` even ones."""
+def even_times(rows: FloatArray, count: int, events: Sequence[Event]) -> FloatArray:
+    """About so many even times [s] and those of events; at a row nearby, of rows (n,) [s], as these cost nothing."""
     even = np.linspace(rows[0], rows[-1], count)
     after = np.searchsorted(rows, even)
-    near = np.minimum(rows[after] - even, even - rows[np.maximum(after - 1, 0)])
-    return np.union1d(rows, even[near > (even[1] - even[0]) / 2])
+    before = np.maximum(after - 1, 0)
+    nearest = rows[np.where(rows[after] - even < even - rows[before], after, before)]
+    near = np.abs(nearest - even) < (even[1] - even[0]) / 2
+    return np.union1d(np.where(near, nearest, even), [event.time for event in events])
 
 
 def _box(points: FloatArray) -> FloatArray:
