@@ -13,8 +13,8 @@ from active_surface.steering.paths import settled
 from active_surface.steering.robustness import Scatter
 from active_surface.steering.settings import Settings
 from active_surface.steering.task import Place, Route, Task
+from common import joined
 from coupling.case import Case, length_text
-from coupling.report import joined
 from particle import Trajectory
 
 
