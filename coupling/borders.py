@@ -46,7 +46,7 @@ class Thresholds:
     knob: str  # "frequency" or "stroke"
     slips_from: float | None
     comes_off_from: float | None
-    holds: float | None  # the pull over what friction holds just before it comes off, where it does not slip before
+    holds: float | None  # the pull over the friction limit just before it comes off, where it does not slip before
 
 
 class Factors(NamedTuple):
@@ -122,7 +122,7 @@ def factors_of(scaled: Callable[[float], PartAtRest]) -> Factors:
 
 
 def excess_pull(rest: PartAtRest) -> float:
-    """The logarithm of the largest pull over what friction holds: the part slips from 0 on."""
+    """The logarithm of the largest pull over the friction limit: the part slips from 0 on."""
     return math.log(min(max(rest.slip().value, 1e-9), 1e9))
 
 

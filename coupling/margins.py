@@ -49,7 +49,7 @@ class Margin:
 class Margins:
     """How near a part came to slipping and to coming off."""
 
-    slip: Margin | None  # largest pull on it over what friction holds while it was stuck; None: it never was
+    slip: Margin | None  # largest pull on it over the friction limit while it was stuck; None: it never was
     contact: Margin | None  # smallest (N + pull-off force) / scale while it touched; None: the law has no pull-off
     pull_off: float | None  # N; None: the law has none
     scale: float  # N, the pull-off force or, where that is 0, the part's weight and squeeze
@@ -65,7 +65,7 @@ class MarginCurves(NamedTuple):
     """The margins over time; nan where the part is not stuck, or does not touch."""
 
     time: FloatArray  # (k,) s
-    slip: FloatArray  # (k,) pull on the part over what friction holds
+    slip: FloatArray  # (k,) pull on the part over the friction limit
     contact: FloatArray  # (k,) (N + pull-off force) / scale; nan also where the law has no pull-off
 
 
@@ -133,7 +133,7 @@ class PathLoads:
         return MarginCurves(self.times, slip, contact)
 
     def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Pull over what friction holds, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
+        """Pull over the friction limit, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
 
         A part that begins to slip counts as stuck at that moment.
         """

@@ -47,7 +47,7 @@ class Summary:
     gravity: float | tuple[float, float, float]  # m/s^2
     squeeze: float  # N
     motion_fits: tuple[MotionFit, ...]  # of a measured motion
-    noise_pull: float | None  # that its noise alone gives a part at rest, over what friction holds; None: not measured
+    noise_pull: float | None  # that its noise alone gives a part at rest, over the friction limit; None: not measured
     load_unbounded: bool  # whether the friction law has no pull-off, whatever the load
     drive_error: float  # of the drives' pieces, relative to the stroke
     drive_jump: float | None  # s, the first jump of a drive's velocity on the way; None: there is none
@@ -140,7 +140,7 @@ def _frames_per_cycle(case: Case, scene: Scene, end: float) -> float | None:
 
 
 def _noise_pull(case: Case, scene: Scene, friction: Contact) -> float | None:
-    """The root mean square of the noise's force along the platform over what friction holds under the weight."""
+    """The root mean square of the noise's force along the platform over the friction limit under the weight."""
     if not scene.fits:
         return None
     shaken = float(np.hypot.reduce([fit.noise_acceleration for fit in scene.fits if fit.axis != "z"] or [0.0]))

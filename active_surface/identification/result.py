@@ -109,7 +109,7 @@ class Identified:
     def warnings(self) -> list[str]:
         """What limits the trust in it."""
         found = [
-            f"{first} and {second} can hardly be told apart: the correlation of their errors is {r:.3f}"
+            f"{first} and {second} can hardly be distinguished: the correlation of their errors is {r:.3f}"
             for first, second, r in self.alike
         ]
         these = "this track" if len(self.fits) == 1 else "these tracks"

@@ -27,7 +27,7 @@ Found = TypeVar("Found")
 
 MIDDLE: Final = 0.15  # on both sides of the median: the residuals from which their density there is estimated
 NEGLIGIBLE: Final = 1e-2  # of a cost that one residual adds: less is no progress
-EXACT: Final = 1e-12  # m: what is nearer cannot be told from a path
+EXACT: Final = 1e-12  # m: what is nearer cannot be distinguished from a path
 NEAR_MEDIAN: Final = 1e-2  # of the median distance: nearer places weigh no more
 REMEMBERED: Final = 400  # paths of a track
 

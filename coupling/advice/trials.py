@@ -23,14 +23,14 @@ from particle.friction import Contact, ScaledFriction
 
 # Factors of the strokes, in the order in which they are tried.
 STROKES: Final = 2.0, 4.0, 8.0, 0.5, 16.0, 32.0, 0.25, 64.0
-FRICTION: Final = 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05  # likewise, of what friction holds
+FRICTION: Final = 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05  # likewise, of the friction limit
 SHARES: Final = 0.5, 0.25, 0.75  # of the way from slipping to coming off, in logarithms
 WIDE: Final = 4.0  # where nothing comes off: up to so many times the frequency from which it slips
 ROOM: Final = 1.05  # ratio of both thresholds below which a trial counts only where there is no other
 NEAR: Final = 3e-5  # of the surface's size: by what a trial must move the part
 ENOUGH: Final = 2e-4  # likewise: by what one within the bounds ends the search beyond them
 FARTHER: Final = 1.2  # times the motion of the case itself, that a trial must make
-LEVEL: Final = 1e-6  # of what friction holds: nothing pulls
+LEVEL: Final = 1e-6  # of the friction limit: nothing pulls
 TURNS: Final = 2  # of the fastest drive, that a trial run has at least
 TRIED: Final = 300  # of the shortest, that a trial run lasts at most
 RAMP: Final = 3.0  # cycles over which forces grow
@@ -43,7 +43,7 @@ class Trial:
 
     frequency: float  # over the case's own
     stroke: float
-    friction: float  # of what friction holds
+    friction: float  # of the friction limit
     place: tuple[float, float] | None  # m, where it began; None: at the case's start
     distance: float  # m
     duration: float  # s, at most that of the case
@@ -83,7 +83,7 @@ class Setting(NamedTuple):
     """What a trial changes besides what its thresholds are of."""
 
     stroke: float = 1.0  # over the case's own
-    friction: float = 1.0  # of what friction holds
+    friction: float = 1.0  # of the friction limit
     plasticity: float | None = None  # its index; None: the case's own
     ramp: float | None = None  # cycles, of forces that begin at once; None: the case's own
     pulled: bool = True  # whether the plate may pull at the part where the law bears any load

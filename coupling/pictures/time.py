@@ -90,7 +90,7 @@ def strokes_of(portrait: Portrait) -> Curves | None:
 
 
 def margins_over_time(portrait: Portrait) -> Curves | None:
-    """The pull over what friction holds and, on a scale of its own, the distance from pull-off; None: there is none."""
+    """The pull over the friction limit and, on a scale of its own, the distance from pull-off; None: there is none."""
     times, slip, contact = portrait.margins
     unit = "pull-off force" if portrait.summary.margins.by_pull_off else "weight"
     off = Curves("distance from coming off", unit, {"distance from coming off": contact}, times, marked=0.0)

@@ -17,13 +17,13 @@ from coupling.summary import PlateSummary, Summary
 from particle import Outcome
 
 MAX_LISTED = 8  # jumps of a measured motion
-NONE = 1e-9  # of what friction holds: rounding
+NONE = 1e-9  # of the friction limit: rounding
 PULLS: Final = "adds most to the pull"
 LIFTS: Final = "takes most off the load"
 MICRO, MILLI = 1e6, 1e3
 MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)")
 """The letter u of "2 um", which terminals can print, where it stands for the prefix."""
-SLIPS = 1 - 1e-6  # of what friction holds: rounding must not decide whether it slips
+SLIPS = 1 - 1e-6  # of the friction limit: rounding must not decide whether it slips
 
 
 def lines(summary: Summary, verbose: bool = False) -> list[tuple[str, str]]:
@@ -151,7 +151,7 @@ def _slip(s: Summary, margin: Margin) -> str:
         return f"slip: first {_when(s, margin, PULLS)}"
     if margin.value < NONE:
         return "slip: nothing pulls the part aside"
-    return f"slip: the pull reaches {margin.value:.3g} of what friction holds, {_when(s, margin, PULLS)}"
+    return f"slip: the pull reaches {margin.value:.3g} of the friction limit, {_when(s, margin, PULLS)}"
 
 
 def _contact(s: Summary, margin: Margin) -> str:
@@ -181,7 +181,7 @@ def threshold_text(t: Thresholds) -> str:
         does = f"comes off even at {LEAST:.1g} times {knob}"
     elif t.holds is not None:
         before = "before it slips" if slips is None or slips > off else "as soon as it slips"
-        just = f"at {BEFORE:g} of that, the pull is {t.holds:.2g} of what friction holds"
+        just = f"at {BEFORE:g} of that, the pull is {t.holds:.2g} of the friction limit"
         does = f"comes off {before}, from {off:.4g} times {knob} on; {just}"
     else:
         does = f"{slip}, and comes off from {off:.4g} times"

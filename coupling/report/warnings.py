@@ -21,7 +21,7 @@ MAX_MODE_ERROR = 1e-2  # of the acceleration of a plate with inertia
 MAX_STRETCH_ERROR = 1e-3  # of the deflection of a plate that stretches
 MIN_STEPS_PER_CYCLE = 8
 MAX_TABLE_ERROR = 0.1  # of the friction limit
-MAX_NOISE_PULL = 0.3  # of what friction holds: a normal distribution passes 1 in one of a thousand moments
+MAX_NOISE_PULL = 0.3  # of the friction limit: a normal distribution passes 1 in one of a thousand moments
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
@@ -101,7 +101,7 @@ def _of_contact(s: Summary) -> Iterator[str]:
         noise = max(fit.noise for fit in s.motion_fits)
         yield (
             f"Noise of {noise * 1e6:.2g} um in the measured motion alone pulls the part by {s.noise_pull:.2g} times "
-            "what friction holds (root mean square): without plate.smoothing, or with a larger one, less noise is left."
+            "the friction limit (root mean square): without plate.smoothing, or with a larger one, less noise is left."
         )
     if s.load_unbounded and s.margins.smallest_load < 0:
         yield (

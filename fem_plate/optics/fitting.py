@@ -25,7 +25,7 @@ MAX_ACTUATORS = 500  # compliances of more take long
 MIN_VALUES = 10
 STEP = 1e-4  # of an unknown, for differences
 PRESSED = 0.9  # of the load at which the plate buckles: more compression is not tried
-RIGID = 1e4  # times the plate's own stiffness at an actuator: more cannot be told from rigid
+RIGID = 1e4  # times the plate's own stiffness at an actuator: more cannot be distinguished from rigid
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class InfluenceFit:
     pixels, functions : int
         How many values on the plate there were, and of how many functions.
     rigid : bool
-        Whether the stiffness went to its upper bound, where actuators cannot be told from rigid ones.
+        Whether the stiffness went to its upper bound, where actuators cannot be distinguished from rigid ones.
     """
 
     stiffness: float

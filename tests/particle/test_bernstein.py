@@ -60,7 +60,7 @@ def test_the_halves_are_the_polynomial_on_either_half(b, s):
 @settings(max_examples=100, deadline=None)
 @given(st.lists(NUMBERS, min_size=2, max_size=17))
 def test_the_first_negative_place_is_the_first_odd_root_of_numpy(b):
-    """Where numpy's roots are told apart from each other and from the ends; the others are met below."""
+    """Where numpy's roots are distinguished from each other and from the ends; the others are met below."""
     p = monomials(b)
     assume(np.abs(b).max() > 1e-3)
     roots = p.roots()

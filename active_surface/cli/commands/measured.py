@@ -160,7 +160,7 @@ def _fit_warnings(found: InfluenceFit, measured: MeasuredInfluence, case: Case) 
         own, other = quantity_text(measured.pitch, "m"), quantity_text(pitch, "m")
         warnings.append(f"the file is of actuators {own} apart (C2CDX_M), the nearest of the case are {other} apart")
     if found.rigid:
-        warnings.append("the actuators cannot be told from rigid ones: the stiffness is a lower bound")
+        warnings.append("the actuators cannot be distinguished from rigid ones: the stiffness is a lower bound")
     for name in ("stiffness", "tension"):
         error = getattr(found, f"{name}_error")
         if error is not None and not error < abs(getattr(found, name)):

@@ -46,7 +46,7 @@ def _panels(run: SavedRun, along: Unit) -> list[dict[str, Any]]:
     if any(height.any() for height in heights.values()):
         panels.append(_panel("Strokes", "m", *_fewer(moments, heights)))
     if np.isfinite(slip).any():
-        pull = _panel("Pull", Unit("of limit", 1.0), *_fewer(moments, {"while stuck, over what friction holds": slip}))
+        pull = _panel("Pull", Unit("of limit", 1.0), *_fewer(moments, {"while stuck, over the friction limit": slip}))
         panels.append(pull | {"limit": 1.0} | _marked(run, summary, "slip", margins.slip))
     if np.isfinite(contact).any():
         unit = Unit("of pull-off" if margins.by_pull_off else "of weight", 1.0)

@@ -128,7 +128,7 @@ def test_what_is_not_determined_is_warned_of(here):
     (here / "rigid.toml").write_text(CASE.format(stiffness=1e9, tension=0))
     command("influence", "rigid.toml", "-l", "specula", "--pixels", "15")
     done = command("fit", "results/rigid.specula.fits", "guess.toml", "--tension", "0 N/m")
-    assert done.exit_code == 0 and "warning     the actuators cannot be told from rigid ones" in done.output
+    assert done.exit_code == 0 and "warning     the actuators cannot be distinguished from rigid ones" in done.output
 
 
 def test_another_pitch_and_what_is_no_influence_function_are_warned_of(here):

@@ -87,7 +87,7 @@ def test_fields_that_do_the_same_are_named_and_have_long_intervals():
     found = identify(braking(), braked(), ["part.squeeze", "part.mass"], threads=1)
     assert [pair[:2] for pair in found.alike] == [("part.squeeze", "part.mass")]
     assert found.alike[0][2] > 0.99
-    assert "can hardly be told apart" in found.warnings()[0]
+    assert "can hardly be distinguished" in found.warnings()[0]
     ratio = [one.high / one.low for one in found.estimates]
     assert min(ratio) > 50
     assert found.case.part.squeeze / found.case.part.mass == pytest.approx(SQUEEZE / MASS, rel=0.05)
