@@ -121,10 +121,6 @@ def test_kernels_of_other_rooms_have_folders_of_their_own(tmp_path, monkeypatch)
     inside, outside = place(drive_piece), place(find_rates)
     assert inside.packages == (PACKAGE,)
     assert outside.packages == (PACKAGE.parent / "coupling" / "stretch", PACKAGE)
-    # Of all files of a room, as one may call what another one imports.
-    from coupling.ringing.march import march
-
-    assert set(place(march).packages) >= {PACKAGE.parent / "coupling" / room for room in ("ringing", "stretch")}
     assert inside.folder.name == f"kernels-{source_digest(PACKAGE)}"
     assert outside.folder.name == f"stretch-kernels-{source_digest(*outside.packages)}"
     # One kind of folders does not drive out the other.
@@ -260,3 +256,11 @@ def test_half_files_and_those_of_other_forms_count_as_not_there(package, tmp_pat
     other = next(file for file in files if file != largest)
     shutil.copy(other, largest)
     assert result(start(package, cache)) == (12.0, 1)
+
+
+@pytest.mark.compiled
+def test_kernels_are_kept_by_the_sources_of_all_rooms_that_they_call():
+    from coupling.ringing.march import march
+
+    rooms = {PACKAGE.parent / "coupling" / room for room in ("ringing", "stretch")}
+    assert set(place_of(march.py_func).packages) == {PACKAGE, *rooms}
