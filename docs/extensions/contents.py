@@ -28,11 +28,11 @@ CONTENTS = {  # the pages below a page, by caption
                 "howto/waves",
                 "howto/ring",
             ),
-            *("howto/chladni", "howto/sweep", "howto/aim", "howto/identify", "howto/optimisers", "howto/paraview"),
+            *("howto/chladni", "howto/sweep", "howto/aim", "howto/identify", "howto/optimisers"),
             "howto/optics",
         ],
         "The program": [
-            *("commands", "case-file", "results", "animations", "page", "app", "plot"),
+            *("commands", "case-file", "results", "pictures", "app"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
         "Theory and trust": [
