@@ -41,7 +41,6 @@ CONTENTS = {  # the pages below a page, by caption
             "validation",
             "paper",
             "paper-readings",
-            "paper-open-points",
             "limits",
             "trust",
             "benchmarks",
