@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
 BLOCKS = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 FIGURE = re.compile(r"-?\d[\d.e+-]*")
-MAX_WORDS = 900
+MAX_WORDS = 700
 
 
 @pytest.mark.compiled
