@@ -28,7 +28,7 @@ CONTENTS = {  # the pages below a page, by caption
                 "howto/waves",
                 "howto/ring",
             ),
-            *("howto/chladni", "howto/aim", "howto/identify", "howto/optimisers"),
+            *("howto/chladni", "howto/identify", "howto/optimisers"),
             "howto/optics",
         ],
         "The program": [
