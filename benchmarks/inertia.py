@@ -1,6 +1,6 @@
 """What a path over a plate with inertia costs, over the same plate without, at three drive frequencies.
 
-    .venv/bin/python benchmarks/inertia.py               writes a table for docs/benchmarks.md
+    .venv/bin/python benchmarks/inertia.py               writes a table for benchmarks/RESULTS.md
     .venv/bin/python benchmarks/inertia.py --count 2     only so many actuators; writes nothing
 
 A clamped disc of silicon under 2 and 25 actuators, strokes up and down for 20 ms at one frequency, each with a delay

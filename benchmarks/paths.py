@@ -1,6 +1,6 @@
 """The integrator and its moving surface against other ways to find the same path, at equal error of the end point.
 
-    .venv/bin/python benchmarks/paths.py                    writes tables for docs/benchmarks.md
+    .venv/bin/python benchmarks/paths.py                    writes tables for benchmarks/RESULTS.md
     .venv/bin/python benchmarks/paths.py --counts 1 25      other numbers of actuators, up to 10 000; writes nothing
     .venv/bin/python benchmarks/paths.py --many             1 000 paths of 20 ms over 25 actuators
 

@@ -4,7 +4,7 @@
     .venv/bin/python benchmarks/plate.py --arrays   times large arrays instead (some minutes)
 
 Every method must first agree with the exact answer within its own bound; then they are timed in turns. The tables are
-printed, and written to `docs/benchmarks.md` when none is missing.
+printed, and written to `benchmarks/RESULTS.md` when none is missing.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def main() -> None:
         if complete:
             report.draw(figures, figures[UNIT].unknowns)
         else:
-            print("NGSolve is not installed: compared without it, and docs/benchmarks.md left as it is.\n")
+            print("NGSolve is not installed: compared without it, and benchmarks/RESULTS.md left as it is.\n")
     for name, lines in blocks.items():
         print("\n".join(lines), end="\n\n")
         if name == "arrays" or complete:

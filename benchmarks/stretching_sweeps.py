@@ -1,6 +1,6 @@
 """A sweep of 1 000 points over a plate that stretches, and the same over a linear one.
 
-    .venv/bin/python benchmarks/stretching_sweeps.py               writes a table for docs/benchmarks.md
+    .venv/bin/python benchmarks/stretching_sweeps.py               writes a table for benchmarks/RESULTS.md
     .venv/bin/python benchmarks/stretching_sweeps.py --count 200   another number of points; writes nothing
     .venv/bin/python benchmarks/stretching_sweeps.py --whole       also whole sweeps, from study to results
 

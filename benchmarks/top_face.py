@@ -1,6 +1,6 @@
 """What the top face and the height of the centre of mass add to the pull on a part, and what they cost.
 
-    .venv/bin/python benchmarks/top_face.py       writes tables for docs/benchmarks.md
+    .venv/bin/python benchmarks/top_face.py       writes tables for benchmarks/RESULTS.md
 
 The pull is that on a glued part on a clamped disc, over a cycle of its central actuator. The cost is that of paths over
 25 actuators; first a height of 1e-12 m must leave the path as it is without.

@@ -8,7 +8,7 @@ sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).pa
 project = "active-surface"
 author = "the active-surface authors"
 project_copyright = f"2026, {author}"
-exclude_patterns = ["extensions"]
+exclude_patterns = ["extensions", "decisions"]
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "contents", "mathml", "reference"]
 
 myst_enable_extensions = ["dollarmath"]

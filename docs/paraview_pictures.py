@@ -1,4 +1,4 @@
-"""Draws docs/howto/paraview_*.png: what ParaView's 3D view shows after each step of the page, drawn by pyvista."""
+"""Draws docs/paraview.png: what ParaView's 3D view shows after the steps of the page, drawn by pyvista."""
 
 import os
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from coupling import read_case, run_case  # noqa: E402
 ROOT = Path(__file__).parent.parent
 SIZE, BACKGROUND, PART = (560, 380), "#52576e", "#ffe14d"  # the colours that ParaView starts with
 RADIUS = 12e-6  # m, of the ball that stands for the part
-EARLY, LATE = 11, 52  # steps that are shown, an eighth of a millisecond each
+LATE = 52  # the step that is shown, of an eighth of a millisecond each
 RANGE = (0.0, 180e-6)  # m, of deflection over all steps
 
 
@@ -24,14 +24,8 @@ def draw_paraview() -> None:
     with TemporaryDirectory() as folder:
         files = run_case(read_case(ROOT / "examples/two_actuators.toml"), output=folder).files
         plates, parts = (list(_steps(file)) for file in files[:2])
-    early, late = EARLY, LATE
-    warped = _warped(plates[early])
-    _shoot("open", plates[early], None, None, coloured=False)
-    _shoot("warp", warped, None, None, coloured=False)
-    _shoot("colour", warped, None, None)
-    _shoot("part", warped, parts[early], None)
-    trail = pyvista.lines_from_points(np.array([part.points[0] for part in parts[: late + 1]]))
-    _shoot("play", _warped(plates[late]), parts[late], trail)
+    trail = pyvista.lines_from_points(np.array([part.points[0] for part in parts]))
+    _shoot(_warped(plates[LATE]), parts[LATE], trail)
 
 
 def _steps(file: Path) -> Iterator[pyvista.DataSet]:
@@ -47,37 +41,26 @@ def _warped(plate: pyvista.DataSet) -> pyvista.DataSet:
     return plate.warp_by_scalar("deflection", factor=1.0, normal=(0, 0, 1))
 
 
-def _shoot(
-    name: str,
-    plate: pyvista.DataSet,
-    part: pyvista.DataSet | None,
-    trail: pyvista.PolyData | None,
-    coloured: bool = True,
-) -> None:
+def _shoot(plate: pyvista.DataSet, part: pyvista.DataSet, trail: pyvista.PolyData) -> None:
     plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
     plotter.set_background(BACKGROUND)
-    if coloured:
-        bar = {
-            "title": "deflection",
-            "vertical": True,
-            "color": "white",
-            "fmt": "%.1e",
-            "position_x": 0.83,
-            "position_y": 0.35,
-            "height": 0.55,
-        }
-        plotter.add_mesh(plate, scalars="deflection", cmap="coolwarm", clim=RANGE, scalar_bar_args=bar)
-    else:
-        plotter.add_mesh(plate, color="white", show_scalar_bar=False)
-    if part is not None:
-        plotter.add_mesh(pyvista.Sphere(radius=RADIUS, center=part.points[0]), color=PART)
-    if trail is not None:
-        plotter.add_mesh(trail, color="white", line_width=3)
+    bar = {
+        "title": "deflection",
+        "vertical": True,
+        "color": "white",
+        "fmt": "%.1e",
+        "position_x": 0.83,
+        "position_y": 0.35,
+        "height": 0.55,
+    }
+    plotter.add_mesh(plate, scalars="deflection", cmap="coolwarm", clim=RANGE, scalar_bar_args=bar)
+    plotter.add_mesh(pyvista.Sphere(radius=RADIUS, center=part.points[0]), color=PART)
+    plotter.add_mesh(trail, color="white", line_width=3)
     plotter.add_axes(color="white", line_width=3)
     plotter.camera_position = [(-7e-4, -9e-4, 7.5e-4), (2e-5, 0.0, 2e-5), (0, 0, 1)]
     plotter.camera.zoom(1.12)
     picture = Image.fromarray(plotter.screenshot(return_img=True))
-    picture.save(ROOT / "docs/howto" / f"paraview_{name}.png", optimize=True)
+    picture.save(ROOT / "docs/paraview.png", optimize=True)
     plotter.close()
 
 

@@ -28,11 +28,11 @@ CONTENTS = {  # the pages below a page, by caption
                 "howto/waves",
                 "howto/ring",
             ),
-            *("howto/chladni", "howto/sweep", "howto/aim", "howto/identify", "howto/optimisers", "howto/paraview"),
+            *("howto/chladni", "howto/identify", "howto/optimisers"),
             "howto/optics",
         ],
         "The program": [
-            *("commands", "case-file", "results", "animations", "page", "app", "plot"),
+            *("commands", "case-file", "results", "pictures", "app"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
         "Theory and trust": [
@@ -41,30 +41,30 @@ CONTENTS = {  # the pages below a page, by caption
             "validation",
             "paper",
             "paper-readings",
-            "paper-open-points",
             "limits",
             "trust",
             "benchmarks",
         ],
         "Reference": ["conventions", "api/index"],
-        "Inside": ["architecture", "decisions/index", "contributing", "changes"],
+        "Inside": ["architecture", "contributing", "changes"],
     },
     "theory": {"": ["plate", "surface", "motion", "contact", "large-deflection", "inertia"]},
     "api/index": {"": PACKAGES},
-    "decisions/index": {"": sorted(page.stem for page in DOCS.glob("decisions/0*.md"))},
 }
 NUMBERED = {"theory"}  # whose pages have the numbers that their equations begin with
 COPIES = {"changes": "CHANGELOG.md", "contributing": "CONTRIBUTING.md"}  # pages that show a file of the root folder
 LISTING = re.compile(r"^Source: \[`[^`]+`\]\(([^)]+)\)$", re.MULTILINE)
 LINK = re.compile(r"\[([^\]]+)\]\(([^)]+)\)")
+# Links to what is in the repository only.
+OFF_SITE = re.compile(r"\[([^\]]+)\]\((?:\.\./|docs/)*(?:decisions|benchmarks)/[^)]+\)")
 LANGUAGES = {".py": "python", ".geo": "c"}
 
 
 def with_directives(page: str, text: str) -> str:
     """The text of a page with the directives that only the site needs."""
     if page in COPIES:
-        return LINK.sub(_link, (DOCS.parent / COPIES[page]).read_text())
-    text = LISTING.sub(_listing, text)
+        return LINK.sub(_link, OFF_SITE.sub(r"\1", (DOCS.parent / COPIES[page]).read_text()))
+    text = LISTING.sub(_listing, OFF_SITE.sub(r"\1", text))
     directives = REFERENCE / f"{page.removeprefix('api/')}.rst"
     if page.startswith("api/") and directives.exists():
         text += f"\n```{{eval-rst}}\n{directives.read_text()}```\n"

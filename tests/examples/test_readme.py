@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
 BLOCKS = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 FIGURE = re.compile(r"-?\d[\d.e+-]*")
-MAX_WORDS = 900
+MAX_WORDS = 700
 
 
 @pytest.mark.compiled
@@ -47,7 +47,6 @@ def test_readme_is_short_and_begins_with_what_to_do():
     assert any("make demo" in line for line in first_screen) and any("make test" in line for line in first_screen)
 
 
-ROWS = re.compile(r"(\d+) rows")
 PAGE = (ROOT / "docs" / "python.md").read_text()
 
 
@@ -57,11 +56,8 @@ def test_python_of_the_page_on_python_runs(tmp_path, monkeypatch, capsys):
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     names = {}
-    for program, wanted in re.findall(r"```python\n(.*?)```(?:\n\nprints\n\n```\n(.*?)```)?", PAGE, flags=re.DOTALL):
+    for program in re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL):
         exec(compile(program, "python.md", "exec"), names)
-        said = capsys.readouterr().out
-        if wanted:
-            assert ROWS.sub("rows", said) == ROWS.sub("rows", wanted)
-            # A step more or less is a matter of rounding, which is that of the processor.
-            assert [int(n) for n in ROWS.findall(said)] == pytest.approx([int(n) for n in ROWS.findall(wanted)], abs=2)
-    assert len(list(tmp_path.glob("*.p*"))) >= 4
+    assert {path.name for path in tmp_path.glob("*.png")} == {"pair.png", "path_and_plate.png", "path.png"}
+    assert names["sweep"].dataset["distance"].max() > 10e-6  # m: the sweep of the page moves the part
+    assert " Hz\n" in capsys.readouterr().out
