@@ -1,6 +1,5 @@
-from .findings import Findings as Findings, read_findings as read_findings
-from .heat import COLOURS as COLOURS, edges as edges, outline as outline
-from .map import (
+from .charts import COLOURS as COLOURS, edges as edges, outline as outline
+from .panels import (
     Panel as Panel,
     about as about,
     draw_sweep as draw_sweep,
@@ -8,4 +7,4 @@ from .map import (
     panels as panels,
     value_panel as value_panel,
 )
-from .selection import Scale as Scale, Selection as Selection
+from .selection import Findings as Findings, Scale as Scale, Selection as Selection, read_findings as read_findings

@@ -11,11 +11,9 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
-from active_surface.studies.pictures.findings import Findings
-from active_surface.studies.pictures.heat import edges
-from active_surface.studies.pictures.map import compose, draw_sweep
-from active_surface.studies.pictures.scatter import CELLS, _draw_nearest
-from active_surface.studies.pictures.selection import Scale, Selection
+from active_surface.studies.pictures.charts import CELLS, draw_nearest, edges
+from active_surface.studies.pictures.panels import compose, draw_sweep
+from active_surface.studies.pictures.selection import Findings, Scale, Selection
 from active_surface.studies.record import OUTCOMES, new_records
 from active_surface.studies.sweep_file import read_dataset, write_sweep
 
@@ -229,7 +227,7 @@ def test_around_points_is_the_colour_of_the_nearest():
     values = np.arange(60.0)
     scales = [SimpleNamespace(logarithmic=False), SimpleNamespace(logarithmic=True)]
     axes = Figure().subplots()
-    _draw_nearest(axes, scales, places, values, {})
+    draw_nearest(axes, scales, places, values, {})
     mesh = axes.collections[0]
     shown = np.asarray(mesh.get_array()).reshape(CELLS, CELLS)
     corners = mesh.get_coordinates()

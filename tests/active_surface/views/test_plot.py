@@ -12,8 +12,7 @@ from sweeps import PLATE, PLATFORM, written
 
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
-from active_surface.studies.pictures.findings import read_findings
-from active_surface.studies.pictures.selection import Selection
+from active_surface.studies.pictures.selection import Selection, read_findings
 from active_surface.views.prints.plots import plot, sweep_pictures
 from active_surface.views.prints.run_pictures import run_pictures
 from active_surface.views.prints.sheet import MM, drawn

@@ -10,8 +10,7 @@ from page_files import CASE, STUDY, data_of, numbers
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
-from active_surface.studies.pictures.findings import Findings
-from active_surface.studies.pictures.selection import Selection
+from active_surface.studies.pictures.selection import Findings, Selection
 from active_surface.studies.read import read_sweep
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.study_page import write_study_page

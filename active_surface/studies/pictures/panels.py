@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from active_surface.studies.pictures.basins import NEARNESS, Basins, is_over_starts
-from active_surface.studies.pictures.curve import draw_curve, draw_shares, draw_threshold
-from active_surface.studies.pictures.findings import Findings
-from active_surface.studies.pictures.heat import OUTCOME, draw_outcome, draw_value
-from active_surface.studies.pictures.scatter import draw_ends, draw_outcomes, draw_points
-from active_surface.studies.pictures.selection import Selection
+from active_surface.studies.pictures.charts import draw_outcomes, draw_threshold, draw_values
+from active_surface.studies.pictures.selection import Findings, Selection
+from active_surface.studies.pictures.starts import NEARNESS, draw_basins, draw_ends, draw_nearness, is_over_starts
 from active_surface.studies.study import Study
 from common import Drawing
 from coupling.pictures import put_title, save_picture
@@ -67,47 +64,29 @@ class Panel(NamedTuple):
 
 def panels(selection: Selection) -> list[Panel]:
     """What tells of a sweep: curves over one axis, maps over two, marks at points, basins over starts."""
+    chosen = [value_panel(selection), outcome_panel(selection)]
     if is_over_starts(selection) and selection.findings.scattered:
-        chosen = [Panel("ends", "where the part ends", lambda figure, axes: draw_ends(axes, selection))]
-        chosen += [value_panel(selection), outcome_panel(selection)]
+        chosen.insert(0, _panel("ends", "where the part ends", draw_ends, selection))
     elif is_over_starts(selection):
-        basins = Basins(selection)
         chosen = [
-            Panel("basins", "where the part is carried", lambda figure, axes: basins.draw_carried(axes)),
-            Panel("nearness", NEARNESS, basins.draw_nearness),
+            _panel("basins", "where the part is carried", draw_basins, selection),
+            _panel("nearness", NEARNESS, draw_nearness, selection),
         ]
-    else:
-        chosen = [value_panel(selection), outcome_panel(selection)]
-    holds, threshold = selection.holds, selection.findings.threshold
-    if holds is not None and threshold and len(selection.axes) > 1:
-        text = threshold.text
-        chosen.append(
-            Panel(
-                "threshold",
-                f"where {text} begins",
-                lambda figure, axes: draw_threshold(axes, selection, holds, text),
-            )
-        )
+    if selection.holds is not None and selection.findings.threshold and len(selection.axes) > 1:
+        title = f"where {selection.findings.threshold.text} begins"
+        chosen.append(_panel("threshold", title, draw_threshold, selection))
     return chosen
 
 
 def value_panel(selection: Selection) -> Panel:
     """The picture of the column that is shown."""
-
-    def draw(figure: Figure, axes: Axes) -> None:
-        if selection.findings.scattered:
-            draw_points(figure, axes, selection)
-        elif len(selection.axes) == 1:
-            draw_curve(axes, selection)
-        else:
-            draw_value(figure, axes, selection)
-
-    return Panel(selection.column, selection.meaning, draw)
+    return _panel(selection.column, selection.meaning, draw_values, selection)
 
 
 def outcome_panel(selection: Selection) -> Panel:
     """The picture of what became of the part."""
-    over_one = draw_outcomes if selection.findings.scattered else draw_shares
-    over_two = draw_outcomes if selection.findings.scattered else draw_outcome
-    draw = over_one if len(selection.axes) == 1 else over_two
-    return Panel("outcome", OUTCOME, lambda figure, axes: draw(axes, selection))
+    return _panel("outcome", "what became of the part", draw_outcomes, selection)
+
+
+def _panel(name: str, title: str, draw: Callable[[Axes, Selection], None], selection: Selection) -> Panel:
+    return Panel(name, title, lambda _, axes: draw(axes, selection))
