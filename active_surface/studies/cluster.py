@@ -44,15 +44,14 @@ def records_on(
     with _connected(scheduler) as client:
         from distributed import as_completed
 
-        pickled, key, ours = pickle.dumps(engine.study), engine.study.key, versions()
-        left = iter(chunks)
+        study, left = (pickle.dumps(engine.study), engine.study.key, versions()), iter(chunks)
         numbers: dict[Future, IntArray] = {}
         running = as_completed([], loop=client.loop)
 
         def hand_out() -> None:
             threads = sum(client.nthreads().values())
             for chunk in islice(left, max(AHEAD * max(threads, 1) - len(numbers), 0)):
-                future = client.submit(_records_on_worker, pickled, key, ours, chunk, pure=False)
+                future = client.submit(_records_on_worker, *study, chunk, pure=False)
                 numbers[future] = chunk
                 running.add(future)
 
@@ -72,7 +71,16 @@ def _connected(scheduler: str) -> Iterator[Client]:
     except ImportError:
         how = "pip install 'active-surface[cluster]'"
         raise RuntimeError(f"Input scheduler needs dask, which is not installed; it comes with {how}") from None
-    _check_address(scheduler)
+    try:  # before there is a client, which would wait for what does not answer
+        kind = interruptible(asyncio.run, _kind_of(scheduler))
+        wrong = "" if kind == "Scheduler" else f"there is a dask {kind.lower()} at that address"
+    except OSError:
+        wrong = f"no dask scheduler answered there in {PATIENCE} s"
+    except (ValueError, TypeError) as error:
+        wrong = str(error)
+    if wrong:
+        expected = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
+        raise ValueError(f"Input scheduler must be {expected}; got {scheduler!r}: {wrong}")
     with Client(scheduler, timeout=PATIENCE, set_as_default=False) as client:
         try:
             client.wait_for_workers(1, timeout=ARRIVAL)
@@ -90,20 +98,6 @@ def _connected(scheduler: str) -> Iterator[Client]:
             raise RuntimeError(f"the scheduler at {scheduler} is gone; the same command goes on with another") from None
 
 
-def _check_address(scheduler: str) -> None:
-    """Raises ValueError unless there is a scheduler at an address."""
-    try:
-        kind = interruptible(asyncio.run, _kind_of(scheduler))
-        wrong = "" if kind == "Scheduler" else f"there is a dask {kind.lower()} at that address"
-    except OSError:
-        wrong = f"no dask scheduler answered there in {PATIENCE} s"
-    except (ValueError, TypeError) as error:
-        wrong = str(error)
-    if wrong:
-        expected = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
-        raise ValueError(f"Input scheduler must be {expected}; got {scheduler!r}: {wrong}")
-
-
 async def _kind_of(address: str) -> str:
     """The kind of dask process at an address."""
     from distributed import Security
@@ -115,7 +109,10 @@ async def _kind_of(address: str) -> str:
 
 
 def _records_on_worker(pickled: bytes, key: str, ours: Mapping[str, str], numbers: IntArray) -> Records:
-    """The records of paths of these numbers, computed by the worker that runs this."""
+    """The records of paths of these numbers, computed by the worker that runs this.
+
+    pickled: the study.  key: its key, and ours: the versions, where the command runs.
+    """
     from distributed import get_worker
 
     worker, theirs = get_worker(), versions()
