@@ -6,17 +6,16 @@ They are found on lanes, threads that work for the page, so that quick answers n
 from __future__ import annotations
 
 import asyncio
-import ctypes
-import gc
 import json
 import re
 import traceback
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any, Final, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from active_surface.app.aiming import Search
 from active_surface.app.drawn import path_of, unit_of
@@ -31,7 +30,6 @@ Answer = TypeVar("Answer")
 
 KEPT_PLATES: Final = 4
 FULL: Final = 4  # threads of runs: one may take seconds to hear that nobody waits for it
-ARENA_MAX, MMAP_THRESHOLD, LARGE = -8, -3, 1 << 18  # the numbers of settings in malloc.h, and bytes
 TEXT: Final = re.compile(r'("(?:[^"\\]|\\.)*")')  # in quotes, as `quoted` writes it
 Send = Callable[[dict[str, Any]], object]
 Mistakes = list[tuple[str, str]]
@@ -69,7 +67,6 @@ class Lanes:
     """What all tabs share: threads, plates that were solved, and quick paths over them."""
 
     def __init__(self) -> None:
-        _spare_memory()
         self.plates = SolvedPlates(keep=KEPT_PLATES)
         self.quick_paths = QuickPaths(self.plates)
         self.quick = ThreadPoolExecutor(1, "quick")
@@ -90,34 +87,19 @@ class Lanes:
             lane.shutdown(wait=False, cancel_futures=True)
 
 
-def tidy() -> None:
-    """Give memory of plates and runs that are gone back to the system."""
-    gc.collect()
-    with suppress(OSError, AttributeError, TypeError):  # elsewhere than with glibc
-        ctypes.CDLL(None).malloc_trim(0)
-
-
-def _spare_memory() -> None:
-    """Have glibc, which is made for short-lived programs, keep less: few pools, and large arrays by themselves."""
-    with suppress(OSError, AttributeError, TypeError):  # elsewhere than with glibc
-        for setting, value in ((ARENA_MAX, 2), (MMAP_THRESHOLD, LARGE)):
-            ctypes.CDLL(None).mallopt(setting, value)
-
-
 class Answers:
     """What is sent to a tab about its case; of what answers an earlier case nothing is sent any more."""
 
     def __init__(self, lanes: Lanes) -> None:
         self.send: Send = lambda message: None  # while nobody is connected
         self.full: Full | None = None
-        self._lanes, self._turn, self._stop = lanes, 0, np.zeros(1, np.int64)
+        self._lanes, self._stop = lanes, np.zeros(1, np.int64)  # 1 once the case is another one
         self._ground = ("", 0.0)  # what models of the plate of the case follow from
         self._search: Search | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     def forget(self) -> None:
         """Answer no more of what was asked before."""
-        self._turn += 1
         self.full = None
         self._stop[0] = 1
         self._stop = np.zeros(1, np.int64)
@@ -131,42 +113,41 @@ class Answers:
 
     async def answer(self, case: Case, saved: bool, rest: bool, page_turn: object = None) -> None:
         """The quick path of a case, and all of its run where the hand rests; saved: whether it is as it is saved."""
-        turn, self._ground = self._turn, (ground_key(case), case.run.duration)
+        stop, self._ground = self._stop, (ground_key(case), case.run.duration)
         try:
-            quick = await self._lanes.run(self._lanes.quick, self._lanes.quick_paths.of, case)
+            quick = await self._lanes.run(self._lanes.quick, self._lanes.quick_paths.of, case, rest)
         except Exception as error:
             self.tell_error(error, page_turn)
             return
         if quick is None:
             self.send({"kind": "later", "turn": page_turn})
-        elif turn == self._turn:
+        elif not stop[0]:
             drawn = path_of(quick.path, unit_of(case))
             self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), "rest": rest, **drawn})
         else:  # another case has come in its place, but the page waits for an answer
             self.send({"kind": "passed", "turn": page_turn})
         if rest:
-            self.spawn(self._run(case, saved, turn))
+            self.spawn(self._run(case, saved, stop))
 
-    async def _run(self, case: Case, saved: bool, turn: int) -> None:
+    async def _run(self, case: Case, saved: bool, stop: NDArray[np.int64]) -> None:
         busy = self._from_thread()
 
         def tell(stage: str, done: int, of: int) -> None:
-            if turn != self._turn:
+            if stop[0]:
                 raise Superseded
             busy({"kind": "busy", "stage": stage, "done": done, "of": of})
 
         try:
-            full = await self._lanes.run(self._lanes.full, full_answer, case, self._lanes.plates, tell, self._stop)
+            full = await self._lanes.run(self._lanes.full, full_answer, case, self._lanes.plates, tell, stop)
         except Superseded:
             return
         except Exception as error:
-            if turn == self._turn:
+            if not stop[0]:
                 self.send({"kind": "idle"})
                 self.tell_error(error)
             return
-        if turn == self._turn:
+        if not stop[0]:
             self.full = full
-            self._lanes.models.submit(tidy)
             drawn = path_of(full.result.trajectory, unit_of(case))
             self.send({"kind": "run", **drawn, **full.shown, "saved": saved})
             self.spawn(self._prepare(case))

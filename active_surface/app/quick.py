@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -17,11 +16,9 @@ from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
 from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
-BUDGET: Final = 0.01  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
+LIMIT: Final = 0.02  # s after which a path is broken off, and a coarser one is tried in its place
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
-LIMIT: Final = 0.3  # s after which a path is broken off that was thought to be shorter
-TRIES, FAR = 4, 10.0  # then a shorter piece is tried, as if it had been so many times too long
-FORGET: Final = 0.97  # of the work of exact ones, with each coarser path: so they are tried again
+LEVELS, SHORTER = 8, 4  # of coarseness: exact, with coarse steps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
 MAX_ACTUATORS: Final = 60  # of a plate that is solved coarsely while something is dragged
@@ -45,50 +42,37 @@ class QuickPaths:
     def __init__(self, plates: SolvedPlates) -> None:
         self._plates = plates
         self._coarse = SolvedPlates(keep=4)
-        self._pace: dict[tuple[float, int], float] = {}  # what `_work` gives
+        self._level: dict[int, int] = {}  # of coarseness that was quick enough, by the number of actuators
 
-    def of(self, case: Case) -> Quick | None:
+    def of(self, case: Case, rest: bool = True) -> Quick | None:
         """The path of a case; None where nothing quick is known, as for a thousand actuators on another plate.
 
+        rest: whether nothing is dragged: so exact paths are tried first again.
         Raises ValueError where the case cannot be run.
         """
         surface, how = self._surface(case)
         if surface is None:
             return None
-        coarse = [how] if how else []
         law, exact, count = build_friction(case), case.run.tolerance, len(case.actuators)
-        tolerance, duration = exact, case.run.duration
-        for _ in range(TRIES):
-            if self._work(tolerance, count) * duration > BUDGET:
+        for level in range(0 if rest else self._level.get(count, 0), LEVELS):
+            tolerance, duration = exact, case.run.duration
+            coarse = [how] if how else []
+            if level > 0:
                 tolerance = max(exact, LOOSE)
-            if (work := self._work(tolerance, count) * duration) > BUDGET:
-                duration *= BUDGET / work
-            run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
-            begun = time.perf_counter()
-            try:
-                with _limited():
-                    path = follow_part(case.model_copy(update={"run": run}), surface, law)
-            except Stopped:
-                self._pace[tolerance, count] = FAR * LIMIT / duration
-                continue
-            work = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * duration)
-            self._pace[tolerance, count] = 0.5 * (work + (self._work(tolerance, count) or work))
-            if tolerance > exact:
-                self._pace[exact, count] *= FORGET
                 coarse.append(f"steps to {tolerance:g}")
-            if duration < case.run.duration:
+            if level > 1:
+                duration /= SHORTER ** (level - 1)
                 coarse.append(f"only its first {duration * 1e3:.3g} ms")
-            return Quick(path, tuple(coarse))
+            run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
+            self._level[count] = level
+            with suppress(Stopped), _limited():
+                return Quick(follow_part(case.model_copy(update={"run": run}), surface, law), tuple(coarse))
         return None
 
     def prepare(self, case: Case, progress: Progress) -> None:
         """Make the model that quick paths over a plate that stretches or vibrates take, unless it is there."""
         if answers_drives(case):
             self._plates.surface(case, partial(_room_of, case), case.run.duration, progress)
-
-    def _work(self, tolerance: float, actuators: int) -> float:
-        """The work [s] for a second of a path, lately, at a tolerance with so many actuators; 0: not known."""
-        return self._pace.get((tolerance, actuators), 0.0)
 
     def _surface(self, case: Case) -> tuple[SurfaceMotion | None, str]:
         """A surface for a case, and what is coarse about it."""

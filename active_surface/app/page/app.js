@@ -83,16 +83,12 @@ const TAKES = {
     mapData = { ...data.map, selected: data.selected };
     showSelection(data);
     showKnobs(data.groups, Boolean(next || onTheWay));
-    const focused = document.activeElement?.dataset?.key;
-    if (!dragged) {
-      drawMap();
-      if (focused) document.querySelector(`[data-key="${focused}"]`)?.focus();
-    }
+    if (!dragged) drawMap();
   },
   path(answer) {
     if (answer.turn) clearMistakes(); // before its case comes, which keeps what is wrong
     arrived(answer, () => {
-      nowPath = { points: pairs(answer.line), coarse: answer.coarse, exact: false };
+      nowPath = { ...pairs(unpack(answer.line)), coarse: answer.coarse, exact: false };
       for (const id of ["run", "trust"]) element(id).classList.add("old");
       drawPath();
       tellPath(answer);
@@ -109,7 +105,7 @@ const TAKES = {
     } else arrived(answer, () => { showMistakes(answer.mistakes, changed); if (!dragged) settleHandles(); });
   },
   async run(answer) {
-    nowPath = { points: pairs(answer.line), coarse: [], exact: true };
+    nowPath = { ...pairs(unpack(answer.line)), coarse: [], exact: true };
     runData = answer;
     if (answer.saved) { RUNS.saved = answer.rows; savedPath = nowPath; }
     RUNS.now = answer.rows;
@@ -143,7 +139,7 @@ const TAKES = {
     beginSearch();
     if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
     if (!line) return;
-    nowPath = { points: pairs(line), coarse: ["search"], exact: false };
+    nowPath = { ...pairs(unpack(line)), coarse: ["search"], exact: false };
     drawPath();
     element("coarse").textContent = `Best drives so far: the part ends ${away} from the target.`;
   },
@@ -235,7 +231,7 @@ function setAiming(on) {
   target = on ? target ?? [...mapData.start] : null;
   element("coarse").textContent = on ? "Click where the part is to go; Escape ends aiming." : "";
   drawMap();
-  if (on) document.querySelector('[data-key="target"]')?.focus();
+  if (on) handleOf("target").focus();
 }
 
 onTurn = (knob, text, rest, stamp) => {
@@ -244,7 +240,7 @@ onTurn = (knob, text, rest, stamp) => {
   if (rest) gestureOf = null;
 };
 const placeTexts = ({ kind, number, at, moved = [true, true] }) => { // of those of x and y that have moved
-  const path = kind === "start" ? "part.position" : `actuators.${number}.position`, digits = 3 - Math.floor(Math.log10(frameBox[1][0] - frameBox[0][0]));
+  const path = kind === "start" ? "part.position" : `actuators.${number}.position`, digits = 3 - Math.floor(Math.log10(mapWidth()));
   const unit = mapData.unit.replace("µ", "u").replace("μ", "u");
   const texts = at.map((c, k) => [`${path}.${k}`, `${Number(c.toFixed(Math.max(0, Math.min(12, digits + 1))))} ${unit}`]);
   return Object.fromEntries(texts.filter((_, k) => moved[k]));

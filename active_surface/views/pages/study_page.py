@@ -19,7 +19,7 @@ from coupling import ProgressCallback, no_progress, report
 if TYPE_CHECKING:
     import xarray
 
-PROGRAMS = "study_map.js", "study_path.js", "study.js"
+PROGRAMS = "plan.js", "study_map.js", "study.js"
 
 
 def write_study_page(

@@ -120,9 +120,10 @@ def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
 
 
 SHOWN = """
-const [axis] = arguments, { e, f } = document.querySelector('[data-key="start"]').transform.baseVal[0].matrix;
+const [axis] = arguments, [x, y] = mapAxes(), { style } = handleOf("start");
+const at = [x.p2l(Number.parseFloat(style.left)), y.p2l(Number.parseFloat(style.top))];
 const { field, slider, data } = knobs.get(`part.position.${axis}`);
-return [[e, -f][axis], Number.parseFloat(field.value), data.low + (data.high - data.low) * slider.value / NOTCHES];
+return [at[axis], Number.parseFloat(field.value), data.low + (data.high - data.low) * slider.value / NOTCHES];
 """
 
 
@@ -135,7 +136,7 @@ def test_fields_sliders_and_the_start_on_the_map_follow_each_other(opened):
         return values[0]
 
     began = shown(0), shown(1)
-    handle = browser.find_element(By.CSS_SELECTOR, '[data-key="start"] .touch')
+    handle = browser.find_element(By.CSS_SELECTOR, '[data-key="start"]')
     drag = ActionChains(browser).click_and_hold(handle).move_by_offset(-40, 0).move_by_offset(-20, 0)
     drag.perform()
     assert shown(0) < began[0] - 20 and shown(1) == began[1]
@@ -153,21 +154,21 @@ def test_fields_sliders_and_the_start_on_the_map_follow_each_other(opened):
     field.send_keys(Keys.CONTROL, "a")
     field.send_keys("-31 um", Keys.ENTER)
     wait(lambda: browser.execute_script("return caseData.map.start[1]") == pytest.approx(-31))
-    assert shown(1) == pytest.approx(-31) and shown(0) == dragged
+    assert shown(1) == pytest.approx(-31, abs=0.05) and shown(0) == dragged
 
 
-def test_on_a_phone_the_scale_has_its_own_room_and_the_map_takes_a_third_at_most(opened):
+def test_on_a_phone_the_map_takes_a_third_at_most(opened):
     browser, _ = opened
     metrics = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
     try:
         wait(lambda: browser.execute_script("return innerWidth") == 390)
         box = "const box = (id) => element(id).getBoundingClientRect();"
-        scale, shades, plate = browser.execute_script(
-            f"{box} return ['scale-text', 'shades', 'map-box'].map((id) => [box(id).top, box(id).bottom])"
+        shades, plate = browser.execute_script(
+            f"{box} return ['shades', 'map-box'].map((id) => [box(id).top, box(id).bottom])"
         )
-        assert browser.find_element(By.ID, "scale-text").text.endswith("\u00b5m")
-        assert scale[1] <= plate[0] and shades[1] <= plate[0]
+        assert "\u00b5m" in browser.find_element(By.CSS_SELECTOR, "#map .xtitle").text
+        assert shades[1] <= plate[0]
         place = "document.querySelector('#knob-part-mass').scrollIntoView({ block: 'end' });"
         plate, third = browser.execute_script(f"{box} {place} return [box('map-box').bottom, innerHeight / 3]")
         assert 0 < plate <= third

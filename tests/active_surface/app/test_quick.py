@@ -7,6 +7,7 @@ from app_case import CASE
 from active_surface.app import quick
 from active_surface.app.quick import LINEAR, PLATE, QuickPaths
 from coupling import SolvedPlates, read_case, run_case, silent
+from particle import Stopped
 
 
 @pytest.fixture
@@ -17,7 +18,6 @@ def case(tmp_path):
 
 @pytest.fixture
 def patient(monkeypatch):
-    monkeypatch.setattr(quick, "BUDGET", 1e3)
     monkeypatch.setattr(quick, "LIMIT", 1e3)
 
 
@@ -41,16 +41,25 @@ def test_over_an_unknown_plate_it_is_near_and_marked(case, patient):
 
 
 @pytest.mark.compiled
-def test_a_path_that_takes_too_long_is_cut_and_marked(case, monkeypatch):
+def test_a_path_that_takes_too_long_is_cut_and_marked(case, patient, monkeypatch):
     plates = SolvedPlates()
     plates.scene(case)
     paths = QuickPaths(plates)
     whole = paths.of(case).path
-    monkeypatch.setattr(quick, "BUDGET", 1e-9)
-    paths.of(case)  # how long its coarser steps take is not known before
+    follow, calls = quick.follow_part, []
+
+    def stopped_twice(*arguments):
+        calls.append(arguments)
+        if len(calls) < 3:
+            raise Stopped
+        return follow(*arguments)
+
+    monkeypatch.setattr(quick, "follow_part", stopped_twice)
     cut = paths.of(case)
-    assert cut.path.time[-1] < whole.time[-1]
-    assert any("first" in text for text in cut.coarse) and any("steps" in text for text in cut.coarse)
+    assert cut.path.time[-1] == whole.time[-1] / 4
+    assert cut.coarse == ("steps to 1e-06", "only its first 0.75 ms")
+    assert paths.of(case, rest=False).coarse == cut.coarse and len(calls) == 4  # while it is dragged
+    assert paths.of(case).coarse == ()
 
 
 @pytest.mark.slow

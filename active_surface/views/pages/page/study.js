@@ -6,7 +6,6 @@ const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), 
 const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats, kept = pageData.kept; // ends of a cell
 const paths = unpackPaths(pageData.paths);
 const MARK = 1; // the number of the trace that marks the chosen cell
-const AXIS = { gridcolor: GRID, zeroline: false, showline: true, linecolor: SOFT, automargin: true };
 let chosen = 0, value = "distance";
 
 function unpackPaths(packed) {
@@ -51,6 +50,53 @@ function addPickers() {
     element("pickers").append(label);
     picker.addEventListener("input", () => choose(cellOf(sides.map((_, k) => Number(element(`picker-${k}`).value)))));
   });
+}
+
+function pathTraces(cell) {
+  const { rim, actuators } = pageData.drawing, places = unpack(actuators), traces = rim.length ? [rimTrace(rim)] : [];
+  if (places.length) traces.push({ ...LOOKS.actuator, ...pairs(places) });
+  const start = { x: [starts[2 * cell]], y: [starts[2 * cell + 1]] }, of = ends.subarray(2 * kept * cell, 2 * kept * (cell + 1));
+  const path = paths.get(cell), straight = { x: [start.x[0], of[0]], y: [start.y[0], of[1]] }, isFirst = Number.isFinite(of[0]);
+  if (isFirst && path) traces.push({ ...LOOKS.path, ...path });
+  else if (isFirst) traces.push({ ...LOOKS.path, ...straight, name: "from start to end", line: { color: PATH, width: 1.5, dash: "dot" } });
+  if (kept > 1 && of.some(Number.isFinite)) {
+    traces.push({ ...pairs(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: colour("accent"), opacity: 0.6 } });
+  }
+  if (!isFirst) return traces; // the first start was refused
+  return [...traces, { ...LOOKS.start, ...start }, { ...LOOKS.end, x: [of[0]], y: [of[1]] }];
+}
+
+function drawPath(cell) {
+  const traces = pathTraces(cell), range = (name) => padded(traces.flatMap((trace) => Array.from(trace[name])));
+  const layout = planLayout(range("x"), range("y"), units.length, { l: 62, r: 10, t: 60, b: 48 }, { constrain: "domain" });
+  return Plotly.react("path", traces, { ...layout, legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" }, showlegend: true }, CONFIG);
+}
+
+function tell(cell) {
+  const place = placeOf(cell), [name, sentence] = pageData.outcomes[outcome[cell]];
+  const terms = axes.map((axis, n) => [axis.name, valueSaid(axis, place[n])]);
+  terms.push(...others.map((axis) => [axis.name, valueSaid(axis, cell)]));
+  terms.push([repeats > 1 ? "usual outcome" : "outcome", name]);
+  if (Number.isFinite(distance[cell])) terms.push([repeats > 1 ? "mean distance" : "distance", `${said(distance[cell])} ${units.distance}`]);
+  describe(element("readout"), terms);
+  const which = repeats > 1 ? " The path is that of the first start." : "";
+  const lacks = Number.isFinite(ends[2 * kept * cell]) ? " This page has no path of this point: only where it starts and ends."
+    : Number.isFinite(distance[cell]) ? " The first start was refused." : "";
+  element("path-caption").textContent = sentence + (paths.has(cell) ? which : lacks);
+}
+
+// Show the path of a cell, and mark the cell.
+async function choose(cell) {
+  chosen = cell;
+  tell(cell);
+  placeOf(cell).forEach((k, n) => {
+    const picker = element(`picker-${n}`);
+    if (!picker) return;
+    picker.value = k;
+    picker.setAttribute("aria-valuetext", valueSaid(axes[n], k));
+  });
+  const mark = markOf(cell);
+  await Promise.all([Plotly.restyle("map", { x: [mark.x], y: [mark.y] }, [MARK]), drawPath(cell)]);
 }
 
 function cellAt(point) {
