@@ -21,7 +21,7 @@ from page_pictures import draw_pages
 from paraview_pictures import draw_paraview
 from tolerance_pictures import draw_tolerance
 
-from active_surface.cli.program import main
+from active_surface.cli import main
 from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.studies import read_study, run_study
 from active_surface.views import animate

@@ -50,8 +50,9 @@ def draw_values(axes: Axes, selection: Selection) -> None:
     elif len(selection.axes) == 1:
         _draw_curve(axes, selection)
     else:
-        draw_field(axes, *selection.axes, selection.mean_value, selection.meaning, selection.unit)
-        draw_outline(axes, *selection.axes, selection.holds)
+        across, up = selection.axes
+        draw_field(axes, across, up, selection.mean_value, selection.meaning, selection.unit)
+        draw_outline(axes, across, up, selection.holds)
 
 
 def draw_outcomes(axes: Axes, selection: Selection) -> None:
@@ -62,8 +63,9 @@ def draw_outcomes(axes: Axes, selection: Selection) -> None:
     elif len(selection.axes) == 1:
         _draw_shares(axes, selection)
     else:
-        draw_classes(axes, *selection.axes, selection.usual_outcome)
-        draw_outline(axes, *selection.axes, selection.holds)
+        across, up = selection.axes
+        draw_classes(axes, across, up, selection.usual_outcome)
+        draw_outline(axes, across, up, selection.holds)
 
 
 def _draw_curve(axes: Axes, selection: Selection) -> None:
@@ -134,7 +136,8 @@ def _draw_points(
     places = np.stack([across.drawn, heights], axis=1)[known]
     if others and len(places) > FEW_POINTS:
         draw_nearest(axes, [across, others[0]], places, colours[known], look)
-    return axes.scatter(*places.T, c=colours[known], **look, **marks(len(known), bool(others)))
+    x, y = places.T
+    return axes.scatter(x, y, c=colours[known], **look, **marks(len(known), bool(others)))
 
 
 def marks(count: int, over_colours: bool = False) -> dict[str, Any]:

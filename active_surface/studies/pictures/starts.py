@@ -73,7 +73,7 @@ def draw_ends(axes: Axes, selection: Selection) -> None:
     frame(axes, across, up)
     draw_rim(axes, [selection.findings.rim[:, order]], scale)
     mark_actuators(axes, selection.findings.actuators[:, order], per_metre=scale)
-    axes.scatter(*ends.T, c="black", **marks(len(ends)))
+    axes.scatter(ends[:, 0], ends[:, 1], c="black", **marks(len(ends)))
     axes.set_aspect("equal")
 
 
