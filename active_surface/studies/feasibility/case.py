@@ -34,7 +34,7 @@ from active_surface.studies.feasibility.ground import Ground, make_ground
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.frequency_range import range_fault
 from common import quantity_text
-from coupling import Progress, borders, build_drives, build_part, silent
+from coupling import Progress, borders, build_drives, build_part, check_case, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
@@ -96,9 +96,10 @@ def feasibility(
     Raises
     ------
     ValueError
-        A platform, drives of which none moves, numbers that make no sense, or a mode without damping that resonates in
-        a steady state.
+        No case, a platform, drives of which none moves, numbers that make no sense, or a mode without damping that
+        resonates in a steady state.
     """
+    check_case(case, "case of feasibility")
     every = build_drives(case)  # one that rests has a frequency, too, which counts for nothing
     drives = [drive for drive, moves in zip(every, moving(drive_table(every)), strict=True) if moves]
     frequency = max((drive.frequency for drive in drives), default=0.0)

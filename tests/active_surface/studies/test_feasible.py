@@ -336,6 +336,12 @@ def test_where_nothing_moves_a_run_slips_with_the_share_of_friction_stated_and_n
         assert (follow_part(weaker, build_surface(weaker), build_friction(weaker)).path_length > 0) == moves
 
 
+@pytest.mark.parametrize("other", [3, "a.toml"])
+def test_what_is_no_case_is_refused(other):
+    with pytest.raises(ValueError, match=f"^Input case of feasibility must be a Case, .* got {other!r}$"):
+        feasibility(other)
+
+
 def test_a_platform_is_refused():
     with pytest.raises(ValueError, match="platform"):
         feasibility(read_case("examples/shaker.toml"))
