@@ -6,6 +6,7 @@ case -> ground (plate, surface) -> chart of borders (slip, single runs) -> valid
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -160,8 +161,8 @@ def _chart(
     else:
         columns = np.geomspace(first, last, count).tolist()
 
-    def find(frequency: float, guess: float) -> Column:
-        return find_column(ground, float(frequency), strokes, guess, threads)
+    def find(frequency: float, beside: Sequence[Column]) -> Column:
+        return find_column(ground, float(frequency), strokes, beside, threads)
 
     with progress(BORDERS) as tell:
         return make_chart(find, columns, strokes, most, tell)

@@ -21,6 +21,8 @@ State = Literal["rest", "moves", "lost", "either"]
 EXACT: Final = 1e-4  # of the stroke: where slip begins
 STRIDE: Final = 0.4  # between the logarithms of strokes tried in search of it
 TOLERANCE: Final = 0.01  # of borders between columns
+ALIKE: Final = 2.1, 1.1  # ratios of frequencies, and of losses over slips, of two columns between which others are so
+NEAR: Final = 0.99  # of the stroke where losses are expected: from there on they are looked for
 BELOW: Final = 0.99  # of the stroke from which the part is lost
 # Ratios of the frequencies of neighbours between which there are no more columns, where so many of them are ragged.
 RAGGED: Final = (1.015, 1.1, 1.2)
@@ -64,10 +66,18 @@ def find_slip(ground: Ground, frequency: float, strokes: tuple[float, float], gu
 
 
 def find_column(
-    ground: Ground, frequency: float, strokes: tuple[float, float], guess: float = 1.0, threads: int | None = None
+    ground: Ground,
+    frequency: float,
+    strokes: tuple[float, float],
+    beside: Sequence[Column] = (),
+    threads: int | None = None,
 ) -> Column:
-    """The borders at a factor of frequency, within factors of the strokes; guess: where slip begins."""
-    slips = find_slip(ground, frequency, strokes, guess)
+    """The borders at a factor of frequency, within factors of the strokes.
+
+    beside: known columns. Slip is looked for from theirs. Between two of them with like borders, losses are looked for
+        from just below where they are expected, else, or where the part is lost there already, from the first slip.
+    """
+    slips = find_slip(ground, frequency, strokes, _guess(beside))
     if slips > strokes[1]:
         return Column(frequency, slips, math.inf, math.inf)
 
@@ -75,8 +85,23 @@ def find_column(
         paths = ground.paths([(frequency, stroke) for stroke in more], threads)
         return [borders.margin_of(path, ground.friction, ground.outline) for path in paths]
 
-    first, last, runs = borders.find_losses(run, slips, slips * (1 + 2 * EXACT), strokes[1])
+    lowest = slips * (1 + 2 * EXACT)
+    low = max(NEAR * slips * _expected_loss(frequency, beside), lowest)
+    if lowest < low < strokes[1]:
+        first, last, runs = borders.find_losses(run, slips, low, strokes[1])
+        if first > low:
+            return Column(frequency, slips, first, last, runs)
+    first, last, runs = borders.find_losses(run, slips, lowest, strokes[1])
     return Column(frequency, slips, max(first, slips), last, runs)
+
+
+def _expected_loss(frequency: float, beside: Sequence[Column]) -> float:
+    """Where losses begin at a factor of frequency, over where slip does, between two columns alike; else 0."""
+    if len(beside) != 2 or not beside[0].frequency < frequency < beside[1].frequency:
+        return 0.0
+    low, high = sorted(one.lost / one.slips for one in beside)
+    near = beside[1].frequency < beside[0].frequency * ALIKE[0] and high < min(low * ALIKE[1], math.inf)
+    return math.sqrt(low * high) if near and not any(one.ragged for one in beside) else 0.0
 
 
 class Limits(NamedTuple):
@@ -139,7 +164,7 @@ class Chart:
 
 
 def make_chart(
-    find: Callable[[float, float], Column],
+    find: Callable[[float, Sequence[Column]], Column],
     frequencies: Sequence[float],
     strokes: tuple[float, float],
     most: int,
@@ -147,12 +172,15 @@ def make_chart(
 ) -> Chart:
     """The chart with columns at these ascending factors, and more of them where borders are not smooth.
 
-    find: a column at a factor of frequency, near a guess of where slip begins.
+    find: a column at a factor of frequency, with known columns beside it: those below it, or one on either side.
     most: columns at most.  tell: takes how many there are, and of how many.
     """
     columns: list[Column] = []
-    for frequency in frequencies:
-        columns.append(find(frequency, _guess(columns)))
+    for frequency in (*frequencies[:-1:2], frequencies[-1]):
+        columns.append(find(frequency, tuple(columns)))
+        tell(len(columns), most)
+    for n in range(1, len(frequencies) - 1, 2):
+        columns.insert(n, find(frequencies[n], (columns[n - 1], columns[n])))
         tell(len(columns), most)
     errors = [(math.inf, math.inf)] * (len(columns) - 1)  # of slips and of losses
 
@@ -169,7 +197,7 @@ def make_chart(
         if not urgency(worst)[0]:
             break
         a, b = columns[worst], columns[worst + 1]
-        middle = find(math.sqrt(a.frequency * b.frequency), _guess([a, b]))
+        middle = find(math.sqrt(a.frequency * b.frequency), (a, b))
         # An interpolation is off by a quarter as much over half of the distance.
         apart = _apart(middle, a, b, ("slips",)), _apart(middle, a, b, ("lost", "all_lost"))
         slips, losses = (error / 4 if error < 4 * TOLERANCE else error for error in apart)

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import Feasible
-from active_surface.studies.feasibility.chart_picture import draw_chart
 from active_surface.studies.feasibility.result import Feasibility
 from common import Drawing, draw, quantity_text, unit_for
 from coupling.pictures import PlateView, draw_plate, put_title
 
-LOST, LINE, PALE = "#c8371b", "#40719c", "#8a8a8a"
+GREEN, PALE_RED, RED, BLUE, GREY = "#8cc7a1", "#e8b0a4", "#c8371b", "#40719c", "#8a8a8a"
+PARTS: Final = 12  # of the way from one column of the chart to the next
+AROUND: Final = 1.8  # times what is drawn: the ends of the axis of strokes
 CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
 SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
@@ -31,10 +33,10 @@ def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | Non
     figure = Drawing(figsize=(6.5, 6.2) if areas is None else (13.0, 9.4))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     if areas is None:
-        draw_chart(figure.add_subplot(), feasibility, picked)
+        _draw_chart(figure.add_subplot(), feasibility, picked)
     else:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1), width_ratios=(1, 1))
-        draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
+        _draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
         _draw_map(figure, figure.add_subplot(grid[0, 1]), feasibility, areas)
         _draw_curves(figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1]), feasibility, areas)
     put_title(
@@ -45,6 +47,92 @@ def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | Non
     return figure
 
 
+def _draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float] | None = None) -> None:
+    """Draw the chart with its case, and a picked frequency [Hz] and stroke [m or N], as points."""
+    chart, own = feasibility.chart, (feasibility.frequency, feasibility.stroke)
+    ends = [one.frequency for one in chart.columns]
+    within = [np.geomspace(a, b, PARTS + 1)[:-1] for a, b in zip(ends, ends[1:], strict=False)]
+    factors = np.append(np.concatenate(within), ends[-1])
+    limits = [chart.limits(k) for k in factors.tolist()]
+    strokes = feasibility.stroke * np.array([(*one.slips, *one.lost) for one in limits])  # (n, 4)
+    columns = feasibility.stroke * np.array([(one.slips, one.all_lost) for one in chart.columns])
+    low, high = _ends(columns, own[1], feasibility.stroke * np.array(chart.strokes))
+    unit, length = unit_for(feasibility.frequency * factors, "Hz"), unit_for(high, feasibility.stroke_unit)
+    x, y = feasibility.frequency * factors * unit.per_si, np.clip(strokes, low / 2, 2 * high) * length.per_si
+    bottom, top = low * length.per_si, high * length.per_si
+    # From the upper of what slip may begin at to the lower of what losses may begin at it moves for certain.
+    axes.fill_between(x, y[:, 1], np.maximum(y[:, 2], y[:, 1]), color=GREEN, linewidth=0)
+    axes.fill_between(x, np.maximum(y[:, 3], y[:, 1]), 2 * top, color=PALE_RED, linewidth=0)
+    either = y[:, 3] > 1.011 * y[:, 2]
+    axes.fill_between(
+        x, y[:, 2], y[:, 3], where=either, facecolor=PALE_RED, edgecolor="white", hatch="////", linewidth=0, step="mid"
+    )
+    axes.plot(x, y[:, 1], color="black", linewidth=1.4)
+    axes.plot(x, y[:, 2], color=RED, linewidth=1.4)
+    keys: list[Artist] = [
+        Patch(facecolor=GREEN, label="it moves"),
+        Patch(facecolor=PALE_RED, label="it is lost"),
+        Line2D([], [], color="black", linewidth=1.4, label="it slips from here"),
+        Line2D([], [], color=RED, linewidth=1.4, label="it is lost from here"),
+    ]
+    if either.any():
+        keys.append(Patch(facecolor=PALE_RED, edgecolor="white", hatch="////", label="ragged: either"))
+    keys += _draw_validity(axes, feasibility, np.array(ends), (bottom, top), unit.per_si, length.per_si)
+    keys.append(_point(axes, own, unit.per_si, length.per_si, "o", "white", "the case"))
+    if picked is not None:
+        keys.append(_point(axes, picked, unit.per_si, length.per_si, "*", "gold", "picked"))
+    _scales(axes, (x[0], x[-1]), (bottom, top))
+    axes.set_xlabel(f"frequency of the fastest drive [{unit.name}]")
+    axes.set_ylabel(f"{'force' if feasibility.stroke_unit == 'N' else 'stroke'} of the largest drive [{length.name}]")
+    axes.set_title(f"from the case's start, {quantity_text(feasibility.ground.duration, 's', 4)}", fontsize=10)
+    axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=8)
+
+
+def _ends(columns: FloatArray, own: float, strokes: FloatArray) -> tuple[float, float]:
+    """The least and the largest stroke drawn: around the borders and the case."""
+    drawn = np.append(columns[np.isfinite(columns)], own)
+    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own) * AROUND)
+
+
+def _draw_validity(
+    axes: Axes, feasibility: Feasibility, ends: FloatArray, view: tuple[float, float], per_hertz: float, per_si: float
+) -> list[Artist]:
+    """Dots above the strokes up to which the model is valid; returns their key."""
+    valid = np.clip(feasibility.stroke * feasibility.valid * per_si, view[0] / 2, 2 * view[1])
+    if (valid > view[1]).all():
+        return []
+    x = ends * feasibility.frequency * per_hertz
+    style: dict[str, Any] = {"facecolor": "none", "edgecolor": "#00000055", "hatch": ".", "linewidth": 0.0}
+    axes.fill_between(x, valid, 2 * view[1], **style)
+    axes.plot(x, valid, "--", color="#333333", linewidth=1.0)
+    linear = feasibility.ground.linear
+    what = "deflection > 0.2 thickness, slope > 0.2" if linear else "slope > 0.2"
+    return [Patch(**style | {"hatch": "..."}, label=f"beyond the model:\n{what}")]
+
+
+def _point(
+    axes: Axes, point: tuple[float, float], per_hertz: float, per_si: float, marker: str, colour: str, label: str
+) -> Artist:
+    """Mark a frequency [Hz] and a stroke; returns the key."""
+    style: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "linestyle": "none"}
+    size = 14 if marker == "*" else 9
+    axes.plot(point[0] * per_hertz, point[1] * per_si, markersize=size, zorder=5, **style)
+    return Line2D([], [], markersize=size * 0.8, label=label, **style)
+
+
+def _scales(axes: Axes, x: tuple[float, float], y: tuple[float, float]) -> None:
+    """Logarithmic axes with plain numbers."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(*x)
+    axes.set_ylim(*y)
+    for axis, ends in ((axes.xaxis, x), (axes.yaxis, y)):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if ends[1] / ends[0] < 1000 else (1,)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+    axes.grid(alpha=0.25)
+
+
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility, areas: Feasible) -> None:
     unit = unit_for(feasibility.outline.box, "m")
     x, y, share = _grid(areas, np.where(areas.own.lost, np.nan, 100 * areas.own.shares))
@@ -53,12 +141,12 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility, areas: Feasi
     slipping = np.ma.masked_where(~(share > 0), share)
     mesh = axes.pcolormesh(*edges, slipping.T, cmap="viridis", vmin=0)
     lost = _grid(areas, np.where(areas.own.lost, 1.0, np.nan))[2]
-    axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([LOST]), vmin=0, vmax=1)
+    axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([RED]), vmin=0, vmax=1)
     if slipping.count():
         figure.colorbar(mesh, ax=axes, label="share of the time in which the part slips [%]", shrink=0.8)
     keys: list[Artist] = [Patch(facecolor="white", edgecolor="black", label="the part stays at rest")]
     if areas.own.lost.any():
-        keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
+        keys.append(Patch(facecolor=RED, label="it comes off at some moment"))
     keys += draw_plate(axes, PlateView(feasibility.outline, feasibility.actuators), unit)
     axes.set_title(f"any start, at the case's drives, {quantity_text(areas.window, 's', 4)}", fontsize=10)
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
@@ -79,11 +167,11 @@ def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility, areas: Fe
     unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(areas.slipping.peak.max()) ** 0.5, SMALLEST), "m")
     per_si, area, square = unit.per_si, side.per_si**2, f"{side.name}²"
     across = frequencies * per_si
-    peak.plot(across, areas.slipping.peak * area, "--", color=PALE, linewidth=1.1, label="it slips, attached then")
-    peak.plot(across, areas.feasible.peak * area, color=LINE, linewidth=1.6, label="it slips and never comes off")
-    peak.plot(across, areas.lost_area * area, ":", color=LOST, linewidth=1.6, label="it comes off at some moment")
-    integral.plot(across, areas.slipping.integral * area * 1e3, "--", color=PALE, linewidth=1.1)
-    integral.plot(across, areas.feasible.integral * area * 1e3, color=LINE, linewidth=1.6)
+    peak.plot(across, areas.slipping.peak * area, "--", color=GREY, linewidth=1.1, label="it slips, attached then")
+    peak.plot(across, areas.feasible.peak * area, color=BLUE, linewidth=1.6, label="it slips and never comes off")
+    peak.plot(across, areas.lost_area * area, ":", color=RED, linewidth=1.6, label="it comes off at some moment")
+    integral.plot(across, areas.slipping.integral * area * 1e3, "--", color=GREY, linewidth=1.1)
+    integral.plot(across, areas.feasible.integral * area * 1e3, color=BLUE, linewidth=1.6)
     peak.set_ylabel(f"largest area [{square}]")
     integral.set_ylabel(f"time integral [{square} ms]")
     for axes, useful in ((peak, areas.feasible.peak * area), (integral, areas.feasible.integral * area * 1e3)):

@@ -1,6 +1,7 @@
 """Borders over frequency and stroke: against single runs of cases at points on either side of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -78,8 +79,8 @@ def charts():
             ground = ground_of(case_of(kind), (0.5, 2.0), strokes)
             count, most = (3, 5) if kind in SLOW else (5, 14)
 
-            def find(k, guess):
-                return find_column(ground, k, strokes, guess)
+            def find(k, beside):
+                return find_column(ground, k, strokes, beside)
 
             known[kind] = ground, make_chart(find, np.geomspace(0.5, 2.0, count).tolist(), strokes, most)
         return known[kind]
@@ -148,6 +149,19 @@ def test_slip_begins_at_the_border_and_not_below(charts, kind):
         below, above = ground.paths([(column.frequency, column.slips * (1 + off)) for off in (-3e-4, 3e-4)])
         assert below.path_length == 0 and below.outcome is Outcome.STUCK
         assert above.path_length > 0 or above.outcome in borders.LOST
+
+
+@pytest.mark.compiled
+def test_between_two_columns_alike_fewer_runs_find_the_same_border(charts):
+    ground, chart = charts("coulomb")
+    strokes = chart.strokes
+    ends = [find_column(ground, k, strokes) for k in (0.9, 1.1)]
+    alone, between = find_column(ground, 1.0, strokes), find_column(ground, 1.0, strokes, ends)
+    assert abs(math.log(between.lost / alone.lost)) < math.log(borders.CLOSE)
+    kept = [sum(margin > 0 for margin in one.runs.values()) for one in (alone, between)]
+    assert 0 < kept[1] < kept[0]
+    wrong = [replace(one, lost=1.05 * one.lost, all_lost=1.05 * one.all_lost) for one in ends]
+    assert find_column(ground, 1.0, strokes, wrong).lost == pytest.approx(alone.lost, rel=2e-4)  # from the slip again
 
 
 @pytest.mark.compiled

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from active_surface.studies.feasibility.chart import TOLERANCE, Column, make_chart
-from active_surface.studies.feasibility.chart_picture import AROUND, _ends
 from active_surface.studies.feasibility.pick import _candidates, clearances
+from active_surface.studies.feasibility.pictures import AROUND, _ends
 
 STROKES = (1e-3, 16.0)
 
@@ -15,7 +15,7 @@ STROKES = (1e-3, 16.0)
 def charted(slips, lost, all_lost=None, first=0.25, last=8.0, count=11, most=40):
     """The chart of borders that are functions of the factor of frequency."""
 
-    def find(k, guess):
+    def find(k, beside):
         upper = lost(k) if all_lost is None else all_lost(k)
         return Column(k, slips(k), lost(k), upper)
 
