@@ -29,9 +29,8 @@ from active_surface.studies.feasibility.chart import (
     find_column,
     make_chart,
     nearest,
-    valid_strokes,
 )
-from active_surface.studies.feasibility.ground import Ground, make_ground
+from active_surface.studies.feasibility.ground import Ground, make_ground, valid_strokes
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.frequency_range import range_fault
 from common import quantity_text

@@ -8,13 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
-import numpy as np
-
-from active_surface.arrays import FloatArray
-from active_surface.studies.feasibility.area import squares_within
 from active_surface.studies.feasibility.ground import Ground
 from coupling import borders
-from coupling.case import PlateCase
 
 State = Literal["rest", "moves", "lost", "either"]
 
@@ -26,9 +21,6 @@ NEAR: Final = 0.99  # of the stroke where losses are expected: from there on the
 BELOW: Final = 0.99  # of the stroke from which the part is lost
 # Ratios of the frequencies of neighbours between which there are no more columns, where so many of them are ragged.
 RAGGED: Final = (1.015, 1.1, 1.2)
-DEFLECTION, SLOPE = 0.2, 0.2  # of the thickness, in linear theory; everywhere: up to these the model is valid
-ACROSS, MOMENTS = 40, 61  # places along the plate's longer side, and moments of the window, where that is seen
-STROKES, FREQUENCIES = 5, 7  # at which a plate that stretches, and one with mass, is looked at
 
 
 @dataclass(frozen=True)
@@ -253,38 +245,3 @@ def nearest(ground: Ground, chart: Chart) -> Nearest:
         share = ground.rest(column.frequency, stroke).slip().value
         found.append(Nearest(column.frequency, stroke, comes_off, share))
     return max(found, key=lambda one: one.share)
-
-
-def valid_strokes(ground: Ground, frequencies: FloatArray, strokes: tuple[float, float], window: float) -> FloatArray:
-    """The strokes' factors (n,) up to which slopes and, in linear theory, deflections are small, at ascending factors.
-
-    window: s, of the drives' own times.
-    """
-    some = np.geomspace(frequencies[0], frequencies[-1], FREQUENCIES) if not ground.follows else np.ones(1)
-    limits = [_valid_stroke(ground, float(k), strokes, window) for k in some]
-    return np.exp(np.interp(np.log(frequencies), np.log(some), np.log(limits)))
-
-
-def _valid_stroke(ground: Ground, frequency: float, strokes: tuple[float, float], window: float) -> float:
-    tried = np.ones(1) if ground.linear else np.geomspace(strokes[1] / 2**STROKES, strokes[1], STROKES + 1)
-    uses = np.array([_share(ground, frequency, float(stroke), window) for stroke in tried])
-    if ground.linear:
-        return float(1 / max(uses[0], 1e-9))
-    uses = np.maximum.accumulate(np.maximum(uses, 1e-9))
-    return float(math.exp(np.interp(0.0, np.log(uses), np.log(tried), right=np.log(tried[-1]))))
-
-
-def _share(ground: Ground, frequency: float, stroke: float, window: float) -> float:
-    """The largest slope, and in linear theory the largest deflection, over what is valid."""
-    plate = ground.case.plate
-    assert isinstance(plate, PlateCase)
-    end = window if ground.follows else window / frequency
-    surface = ground.driven(1.0 if ground.follows else frequency, stroke, end)
-    points = np.concatenate([squares_within(ground.outline, ACROSS).centres, ground.actuators])
-    share = 0.0
-    for time in np.linspace(0.0, end, MOMENTS).tolist():
-        state = surface.evaluate(points, time)
-        share = max(share, float(np.hypot(*state.gradient.T).max()) / SLOPE)
-        if ground.linear:
-            share = max(share, float(np.abs(state.w).max()) / (DEFLECTION * plate.thickness))
-    return share
