@@ -16,8 +16,8 @@ from pydantic import Field as Key
 
 from active_surface.arrays import FloatArray
 from active_surface.parameter import Parameter
+from active_surface.studies.columns import COLUMNS
 from active_surface.studies.points_file import Column, PointsFile
-from active_surface.studies.record import COLUMNS
 from coupling import near
 from coupling.case import (
     Case,

@@ -16,8 +16,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 from active_surface.arrays import IntArray
+from active_surface.studies.columns import Records
 from active_surface.studies.engine import Engine
-from active_surface.studies.record import Records
 from active_surface.studies.study import versions
 from particle import interruptible
 

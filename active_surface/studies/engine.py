@@ -14,10 +14,8 @@ from typing import Final
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.studies.record import Records, new_records, put
-from active_surface.studies.refusal import case_faults, contact_of, mistakes_of, start_faults
-from active_surface.studies.study import Study
-from active_surface.studies.variants import case_at, drive_sets, drives_vary, is_deep, largest, longest_duration
+from active_surface.studies.columns import Records, new_records, put
+from active_surface.studies.study import Study, contact_of, is_deep, start_faults
 from coupling import (
     FAILURES,
     PathTask,
@@ -29,7 +27,7 @@ from coupling import (
     one_blas_thread,
     silent,
 )
-from coupling.case import Case, InputError, PlatformCase
+from coupling.case import Case, PlatformCase
 from coupling.scene import Scene, platform_scene
 from particle import SurfaceMotion, Trajectory
 
@@ -50,7 +48,7 @@ class Engine:
         self._deep = [axis for axis in study.points.axes if is_deep(study.case, axis)]
         self._plates = SolvedPlates(keep=min(self._plates_at_a_time(), SURFACES))
         self._failed: dict[str, str] = {}  # why there is nothing to move over
-        self._duration = longest_duration(study)
+        self._duration = study.duration
         self.paths = len(study.points)
         self.chunk_length = self._chunk_length()
 
@@ -65,7 +63,7 @@ class Engine:
             drives, plate = [*scene.lifts, *scene.base], A_PLATFORM
         else:
             drives, plate = build_drives(case), A_PLATE
-        fastest = max((*(drive.frequency for drive in drives), *largest(points, "frequency")), default=0.0)
+        fastest = max((*(drive.frequency for drive in drives), *points.largest("frequency")), default=0.0)
         each = A_PATH + A_CYCLE * self._duration * fastest + plate / self._paths_of_a_plate()
         return max(int(AT_ONCE / each), 1)
 
@@ -104,7 +102,7 @@ class Engine:
 
     def scene(self, case: Case) -> Scene:
         """The scene of a case of the study, over the surface that its paths share; raises as `SolvedPlates` does."""
-        return self._plates.scene_among(case, partial(drive_sets, self.study, case), self._duration)
+        return self._plates.scene_among(case, partial(self.study.drive_sets, case), self._duration)
 
     def _computed(
         self, numbers: Sequence[int] | IntArray, visit: Visit | None = None
@@ -115,12 +113,9 @@ class Engine:
         points, grounds = self.study.points, defaultdict[str, list[tuple[int, Case]]](list)
         displaced = points.displacements(numbers)
         for row, values in enumerate(points.values(numbers)):
-            try:
-                case = case_at(self.study, values)
-            except InputError as error:
-                wrong[row] = mistakes_of(error)
-            except ArithmeticError as error:
-                wrong[row] = [f"its case cannot be made: {error}"]
+            case = self.study.case_or_faults(values)
+            if isinstance(case, list):
+                wrong[row] = case
             else:
                 grounds[ground_key(case)].append((row, case))
         with one_blas_thread():
@@ -146,16 +141,16 @@ class Engine:
         wrong: dict[int, list[str]],
     ) -> tuple[list[int], list[PathTask]]:
         """The rows and paths of cases over the same ground; notes their starts, and in `wrong` why one is refused."""
-        first, vary = pairs[0][1], drives_vary(self.study.points.axes)
+        first, vary = pairs[0][1], self.study.drives_vary
         surface = self._surface(ground, first)
         starts = np.array([case.part.position for _, case in pairs]) + displaced
         rows, tasks = [], []
         for (row, case), place, messages in zip(pairs, starts.tolist(), start_faults(first, starts), strict=True):
             records["start_x"][row], records["start_y"][row] = place
             law = contact_of(case.friction)
-            if faults := [*messages, *case_faults(case), *([surface] if isinstance(surface, str) else [])]:
-                wrong[row] = faults
-            elif not isinstance(law, str) and not isinstance(surface, str):
+            if isinstance(law, str) or isinstance(surface, str) or messages:
+                wrong[row] = [*messages, *(one for one in (law, surface) if isinstance(one, str))]
+            else:
                 part, drives = build_part(case, (place[0], place[1])), build_drives(case) if vary else None
                 rows.append(row)
                 tasks.append(PathTask(surface, part, law, case.run, drives))
@@ -168,7 +163,7 @@ class Engine:
         """
         if ground not in self._failed:
             try:
-                return self._plates.surface(case, partial(drive_sets, self.study, case), self._duration)
+                return self._plates.surface(case, partial(self.study.drive_sets, case), self._duration)
             except FAILURES as error:
                 self._failed[ground] = f"what the part moves over cannot be made: {error}"
         return self._failed[ground]

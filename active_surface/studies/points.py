@@ -16,7 +16,6 @@ from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from active_surface.arrays import FloatArray, IntArray
 from active_surface.studies.axes import Axis
@@ -25,6 +24,7 @@ Sampling = Literal["grid", "list", "random", "sobol"]
 SAMPLED, JITTERED = 0, 1  # independent streams of random numbers
 DRAWN: Final = ("random", "sobol")
 DIGEST: Final = 16  # bytes
+SPREAD: Final = 48  # points whose drives stand for those of all
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Points:
         if self.sampling == "grid":
             sizes = {axis.name: len(axis.values) for axis in self.axes}
         else:
-            sizes = {"point": self.count if self.sampling in DRAWN else len(self.axes[0].values)}
+            sizes = {"point": self.count if self.drawn else len(self.axes[0].values)}
         return sizes | ({"repeat": self.repeats} if self.repeats > 1 else {})
 
     @property
@@ -67,9 +67,14 @@ class Points:
         return math.prod(self.shape)
 
     @property
+    def drawn(self) -> bool:
+        """Whether the points are drawn from random numbers."""
+        return self.sampling in DRAWN
+
+    @property
     def stream(self) -> tuple[float, int | None]:
         """The jitter [m], and the seed where something is drawn."""
-        return self.jitter, self.seed if self.sampling in DRAWN or self.jitter else None
+        return self.jitter, self.seed if self.drawn or self.jitter else None
 
     def values(self, numbers: Iterable[int]) -> list[tuple[Any, ...]]:
         """The values of the axes, in SI units, for paths of these numbers."""
@@ -88,6 +93,17 @@ class Points:
         units = self._sobol(at) if self.sampling == "sobol" else self._random(at)
         return [axis.spread(units[:, k]) for k, axis in enumerate(self.axes)]
 
+    def samples(self) -> list[tuple[Any, ...]]:
+        """The values where all axes are lowest, where all are highest, and at points spread between."""
+        rows = np.unique(np.linspace(0, len(self) // self.repeats - 1, SPREAD).astype(np.int64))
+        ends = [tuple(axis.end(which) for axis in self.axes) for which in (0, -1)]
+        return [*ends, *self.values(rows * self.repeats)]
+
+    def largest(self, path: str) -> list[float]:
+        """The largest value of each axis over a field whose path ends with this one."""
+        axes = [axis for axis in self.axes if f".{axis.field.path}".endswith(f".{path}")]
+        return [max(axis.values or (axis.low, axis.high)) for axis in axes]
+
     def keys(self, numbers: Iterable[int], base: bytes) -> list[bytes]:
         """A digest (n,) of what each of these paths follows from: a base that all share, its point and its repeat."""
         points, places, repeats = self._apart(numbers)
@@ -104,7 +120,7 @@ class Points:
         """
         contents = self._contents(at)
         if self.jitter and self.sampling != "grid":
-            marks = at.tolist() if self.sampling in DRAWN else [self._earlier[k] for k in at.tolist()]
+            marks = at.tolist() if self.drawn else [self._earlier[k] for k in at.tolist()]
             contents = [f"{content}{mark or ''}" for content, mark in zip(contents, marks, strict=True)]
         return [hashlib.sha256(content.encode()).digest()[:DIGEST] for content in contents]
 
@@ -159,6 +175,8 @@ class Points:
         if len(at) == 0:
             return np.empty((0, len(self.axes)))
         first, last = int(at.min()), int(at.max()) + 1
+        from scipy.stats import qmc  # here, because it takes a while
+
         sequence = qmc.Sobol(len(self.axes), rng=self.seed)
         if first > 0:
             return sequence.fast_forward(first).random(last - first)[at - first]

@@ -13,13 +13,11 @@ import numpy as np
 from pydantic import ConfigDict, Field, PlainValidator, StrictInt, StrictStr, ValidationError, WithJsonSchema
 
 from active_surface.studies.axes import AxisTable, must, read_axes
+from active_surface.studies.columns import Threshold, read_threshold
 from active_surface.studies.points import DRAWN, Points, Sampling
 from active_surface.studies.points_file import ENDINGS, read_points_file
-from active_surface.studies.refusal import refusals
-from active_surface.studies.study import Study
+from active_surface.studies.study import Study, is_deep
 from active_surface.studies.sweep_file import differences, key_of, read_dataset, whole
-from active_surface.studies.threshold import Threshold, read_threshold
-from active_surface.studies.variants import is_deep
 from coupling.case import (
     UNITS_REQUIRED,
     Case,
@@ -218,7 +216,7 @@ def _all_refused(study: Study) -> str:
     places = np.unique(np.linspace(0, len(study.points) - 1, TRIED).astype(np.int64)).tolist()
     first = ""
     for k in places:
-        messages = refusals(study, k)
+        messages = study.refusals(k)
         if not messages:
             return ""
         first = first or "; ".join(messages)

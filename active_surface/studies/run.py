@@ -17,9 +17,9 @@ import numpy as np
 
 from active_surface.studies.axes import counted
 from active_surface.studies.cluster import records_on
+from active_surface.studies.columns import OUTCOMES
 from active_surface.studies.engine import Engine
 from active_surface.studies.pictures import draw_sweep
-from active_surface.studies.record import OUTCOMES
 from active_surface.studies.study import Study
 from active_surface.studies.sweep_file import (
     differences,

@@ -17,10 +17,9 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axes import Axis
+from active_surface.studies.columns import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.points import Points
-from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.study import Study, versions
-from active_surface.studies.variants import heights_key
 from common import UNREADABLE, check_hdf5, survives
 from coupling import check_room, whole_file
 from coupling.case import Case, PlateCase, find_field, lattice_of
@@ -102,7 +101,7 @@ def _about(study: Study) -> dict[str, Any]:
         "versions": json.dumps(versions()),
         "sampling": study.points.sampling,
         "stream": json.dumps(study.points.stream),
-        "heights": heights_key(study),
+        "heights": study.heights,
         "axes": " ".join(axis.name for axis in study.points.axes),
         "actuators": np.array([c for actuator in study.case.actuators for c in actuator.position], dtype=float),
         "rim": _rim(study.case).ravel(),
@@ -240,7 +239,7 @@ def differences(study: Study, path: Path) -> list[str]:
 
 def keys_of(study: Study) -> Iterator[bytes]:
     """Yield a digest of what each path of a study follows from."""
-    points, base = study.points, _base(study.traits, study.points.stream, heights_key(study))
+    points, base = study.points, _base(study.traits, study.points.stream, study.heights)
     for first in range(0, len(points), AT_ONCE):
         yield from points.keys(range(first, min(first + AT_ONCE, len(points))), base)
 
@@ -256,7 +255,7 @@ def finished_paths(study: Study, path: Path) -> Iterator[tuple[list[bytes], Reco
             return
         traits, stream, heights = json.loads(about["traits"]), json.loads(about["stream"]), str(about["heights"])
         base = _base(traits, stream, heights)
-        if base != _base(study.traits, study.points.stream, heights_key(study)):
+        if base != _base(study.traits, study.points.stream, study.heights):
             return
         lattice, _ = lattice_of(study.case)
         axes = []

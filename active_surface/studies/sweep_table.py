@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from active_surface.arrays import IntArray
-from active_surface.studies.record import KIND, Records
+from active_surface.studies.columns import KIND, Records
 
 MADE_BY: Final = 0x41535357
 """SQLite's mark of the program that made a file."""

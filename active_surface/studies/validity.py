@@ -11,9 +11,7 @@ import numpy as np
 
 from active_surface.studies.engine import Engine
 from active_surface.studies.points import Points
-from active_surface.studies.refusal import refusals
 from active_surface.studies.study import Study
-from active_surface.studies.variants import case_at
 from coupling import (
     FAILURES,
     PlateSummary,
@@ -92,8 +90,8 @@ def _cases(study: Study) -> Iterator[Case]:
     points = study.points
     for point in corners(points):
         path = point * points.repeats
-        if not refusals(study, path):
-            yield case_at(study, points.values([path])[0])
+        if not study.refusals(path):
+            yield study.case_at(points.values([path])[0])
 
 
 def corners(points: Points) -> list[int]:

@@ -15,9 +15,8 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
+from active_surface.studies.columns import OUTCOMES, lowest
 from active_surface.studies.pictures.selection import Scale, Selection, labelled
-from active_surface.studies.record import OUTCOMES
-from active_surface.studies.threshold import lowest
 from common import Unit, figure_of, legend_below
 from coupling.pictures import plain_ticks
 
@@ -136,8 +135,7 @@ def _draw_points(
     places = np.stack([across.drawn, heights], axis=1)[known]
     if others and len(places) > FEW_POINTS:
         draw_nearest(axes, [across, others[0]], places, colours[known], look)
-    x, y = places.T
-    return axes.scatter(x, y, c=colours[known], **look, **marks(len(known), bool(others)))
+    return axes.scatter(places[:, 0], places[:, 1], c=colours[known], **look, **marks(len(known), bool(others)))
 
 
 def marks(count: int, over_colours: bool = False) -> dict[str, Any]:

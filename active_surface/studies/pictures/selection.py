@@ -15,10 +15,9 @@ from pydantic import TypeAdapter
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.axes import Axis, counted
+from active_surface.studies.columns import COLUMNS, OUTCOMES, Threshold, read_threshold
 from active_surface.studies.points import longest
-from active_surface.studies.record import COLUMNS, OUTCOMES
 from active_surface.studies.sweep_file import LOGARITHMIC, key_of, read_dataset, whole
-from active_surface.studies.threshold import Threshold, read_threshold
 from common import Unit, unit_for
 from coupling import near
 from coupling.case import Field

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from active_surface.arrays import FloatArray
+from active_surface.studies.columns import OUTCOMES
 from active_surface.studies.pictures.charts import COLOURS, draw_classes, draw_field, draw_outline, frame, marks
 from active_surface.studies.pictures.selection import Scale, Selection, mean
-from active_surface.studies.record import OUTCOMES
 from common import draw_rim, quantity_text, unit_for
 from fem_plate import mark_actuators
 from particle import Outcome

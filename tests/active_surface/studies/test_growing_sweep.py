@@ -15,7 +15,6 @@ from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
 from active_surface.studies.sweep_file import finished_paths, keys_of
-from active_surface.studies.variants import heights_key
 from coupling import batch
 
 MASS = '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg"]\n'
@@ -142,12 +141,12 @@ def test_paths_over_a_plate_solved_for_all_drives_together_are_not_kept(tmp_path
     stretching = PLATE.replace('"disc"', '"disc"\ntheory = "von-karman"')
     stroke = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "2 um"]\n'
     more = stroke.replace("2 um", "3 um")
-    keys = {heights_key(read_study(written(tmp_path, text, stretching))) for text in (stroke, more)}
+    keys = {read_study(written(tmp_path, text, stretching)).heights for text in (stroke, more)}
     assert len(keys) == 2 and "" not in keys
     starts = '[[axes]]\nfield = "part.position.0"\nvalues = ["1 um", "{}"]\n'
-    keys = {heights_key(read_study(written(tmp_path, starts.format(x), stretching))) for x in ("2 um", "3 um")}
+    keys = {read_study(written(tmp_path, starts.format(x), stretching)).heights for x in ("2 um", "3 um")}
     assert len(keys) == 1  # the drives are the same
-    assert heights_key(read_study(written(tmp_path, stroke, PLATE))) == ""
+    assert read_study(written(tmp_path, stroke, PLATE)).heights == ""
 
 
 @pytest.mark.parametrize("sampling", ["random", "sobol", "grid", "list"])

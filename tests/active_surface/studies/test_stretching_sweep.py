@@ -6,7 +6,6 @@ from sweeps import DISC_PLATE, toml, written
 
 from active_surface.studies import read_study
 from active_surface.studies.engine import Engine
-from active_surface.studies.variants import case_at
 from coupling import build_drives, run_case, shared_surface
 
 pytestmark = pytest.mark.compiled
@@ -41,7 +40,7 @@ def test_paths_are_those_of_single_runs(engine):
     records = engine.records(range(4))
     assert not records["mistakes"].any()
     for k, values in enumerate(engine.study.points.values(range(4))):
-        case = case_at(engine.study, values)
+        case = engine.study.case_at(values)
         path = run_case(case).trajectory
         assert path.path_length > 1e-7
         end = records["end_x"][k], records["end_y"][k]
@@ -72,7 +71,7 @@ def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
     text = '[[axes]]\nfield = "run.duration"\nvalues = ["1 ms", "4 ms"]\n'
     engine = Engine(read_study(written(tmp_path, text, CASE.replace('"2000 Hz"', '"2000 Hz"\ncycles = 20'))))
     records = engine.records(range(2))
-    longer = run_case(case_at(engine.study, (4e-3,))).trajectory
+    longer = run_case(engine.study.case_at((4e-3,))).trajectory
     end = records["end_x"][1], records["end_y"][1]
     assert end == pytest.approx(longer.position[-1], abs=3e-4 * longer.path_length)
 

@@ -9,7 +9,6 @@ from sweeps import LATTICE, PLATE, PLATFORM, written
 from active_surface.parameter import Parameter
 from active_surface.studies import read_study, sweep_file
 from active_surface.studies.axes import spaced
-from active_surface.studies.variants import case_at
 from coupling import InputError, ground_key, read_case
 
 TWO = """\
@@ -89,7 +88,7 @@ CHANGED = [
 @pytest.mark.parametrize(("text", "field", "value", "old", "new"), CHANGED, ids=lambda text: str(text)[:24])
 def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, field, value, old, new):
     study = read_study(written(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = [{value}]\n', text))
-    case = case_at(study, study.points.values(range(1))[0])
+    case = study.case_at(study.points.values(range(1))[0])
     (tmp_path / "changed.toml").write_text(text.replace(old, new))
     expected = read_case(tmp_path / "changed.toml")
     assert case.model_dump(exclude={"name", "source"}) == expected.model_dump(exclude={"name", "source"})
@@ -109,12 +108,12 @@ def test_a_lattice_alone_is_made_anew_and_none_of_its_old_actuators_stay(tmp_pat
     study = read_study(written(tmp_path, f'[[axes]]\nfield = "lattice.{field}"\nvalues = [{value}]\n', alone))
     (values,) = study.points.values(range(1))
     (tmp_path / "same.toml").write_text(alone.replace(old, f"{field} = {value}"))
-    assert case_at(study, values).actuators == read_case(tmp_path / "same.toml").actuators
+    assert study.case_at(values).actuators == read_case(tmp_path / "same.toml").actuators
 
 
 def test_an_actuator_that_a_lattice_made_may_be_varied_by_itself(tmp_path):
     study = read_study(written(tmp_path, '[[axes]]\nfield = "actuators.3.stroke"\nvalues = ["7 um"]\n', LATTICE))
-    case = case_at(study, (7e-6,))
+    case = study.case_at((7e-6,))
     assert [actuator.stroke for actuator in case.actuators] == pytest.approx([1e-6, 5e-6, 1e-5, 7e-6])
 
 
@@ -126,7 +125,7 @@ def test_points_with_the_same_plate_share_their_ground_and_others_do_not(tmp_pat
             + TWO.replace("spacing", "count = 2\nspacing"),
         )
     )
-    grounds = [ground_key(case_at(study, values)) for values in study.points.values(range(len(study.points)))]
+    grounds = [ground_key(study.case_at(values)) for values in study.points.values(range(len(study.points)))]
     assert grounds == grounds[:1] * 6 + grounds[6:7] * 6 and len(set(grounds)) == 2
 
 
@@ -143,9 +142,9 @@ def test_a_contradiction_at_one_point_is_found_there(tmp_path):
     for values in study.points.values(range(4)):
         if values == (0.3, 0.2):
             with pytest.raises(InputError, match="must be at least coefficient"):
-                case_at(study, values)
+                study.case_at(values)
         else:
-            assert case_at(study, values).friction.coefficient == values[0]
+            assert study.case_at(values).friction.coefficient == values[0]
 
 
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.integers(1, 30))

@@ -10,7 +10,7 @@ from sweeps import LATTICE, PLATE, PLATFORM, SHAKEN, same, written
 
 from active_surface.cli.program import main
 from active_surface.studies import Engine, lines, read_study, run_study
-from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
+from active_surface.studies.columns import COLUMNS, KIND, OUTCOMES, new_records
 from coupling import batch, read_case
 from coupling.case import CaseError
 from coupling.run import build_friction, build_surface, follow_part

@@ -9,9 +9,9 @@ import pytest
 from sweeps import PLATFORM, SHAKEN, same, written
 
 from active_surface.studies import read_study, run_study
+from active_surface.studies.columns import new_records
 from active_surface.studies.engine import Engine
 from active_surface.studies.read import read_sweep
-from active_surface.studies.record import new_records
 from active_surface.studies.sweep_file import read_dataset
 from active_surface.studies.sweep_table import sweep_table
 

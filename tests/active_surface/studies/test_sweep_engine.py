@@ -15,7 +15,6 @@ from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study, validity
 from active_surface.studies.engine import Engine
 from active_surface.studies.validity import corners
-from active_surface.studies.variants import case_at
 from coupling import batch, report, solved_plates
 
 
@@ -120,7 +119,7 @@ def test_ten_thousand_actuators_are_varied_at_once(tmp_path):
     study = read_study(
         written(tmp_path, '[[axes]]\nfield = "actuators.*.stroke"\nrange = ["1 um", "2 um"]\ncount = 9\n', case)
     )
-    cases = [case_at(study, (stroke * 1e-6,)) for stroke in (1.1, 1.2, 1.3)]
+    cases = [study.case_at((stroke * 1e-6,)) for stroke in (1.1, 1.2, 1.3)]
     assert [{actuator.stroke for actuator in made.actuators} for made in cases] == [{1.1e-6}, {1.2e-6}, {1.3e-6}]
     assert len({actuator.position for actuator in cases[0].actuators}) == len(cases[0].actuators) == 10_001
     assert cases[0].actuators[7].position == study.case.actuators[7].position

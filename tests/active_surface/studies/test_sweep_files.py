@@ -14,8 +14,8 @@ from sweeps import PLATFORM, written
 
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study, sweep_file
+from active_surface.studies.columns import COLUMNS, new_records
 from active_surface.studies.engine import Engine
-from active_surface.studies.record import COLUMNS, new_records
 from active_surface.studies.sweep_file import keys_of
 from active_surface.studies.sweep_table import sweep_table
 from coupling import environment as versions

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
+from active_surface.studies.columns import OUTCOMES, new_records
 from active_surface.studies.pictures.charts import CELLS, draw_nearest, edges
 from active_surface.studies.pictures.panels import compose, draw_sweep
 from active_surface.studies.pictures.selection import Findings, Scale, Selection
-from active_surface.studies.record import OUTCOMES, new_records
 from active_surface.studies.sweep_file import read_dataset, write_sweep
 
 

@@ -8,13 +8,12 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study, run_study
+from active_surface.studies.columns import OUTCOMES, Threshold, lowest, new_records, read_threshold
 from active_surface.studies.engine import Engine
 from active_surface.studies.pictures.panels import compose
 from active_surface.studies.pictures.selection import Findings, read_findings
 from active_surface.studies.read import read_sweep
-from active_surface.studies.record import OUTCOMES, new_records
 from active_surface.studies.sweep_file import key_of, read_dataset, write_sweep
-from active_surface.studies.threshold import Threshold, lowest, read_threshold
 from coupling.case import CaseError
 
 AXES = """\

@@ -6,7 +6,6 @@ from sweeps import DISC_PLATE, toml, written
 
 from active_surface.studies import read_study
 from active_surface.studies.engine import Engine
-from active_surface.studies.variants import case_at
 from coupling import run_case
 from coupling.vibration import vibration
 from fem_plate import Plate
@@ -62,7 +61,7 @@ def test_plate_and_modes_are_found_once(found):
 def test_paths_are_those_of_single_runs(found, k):
     """Which keep other modes each: to 1e-6 of the place at the end, and 1e-4 of the path."""
     engine, records, _ = found
-    path = run_case(case_at(engine.study, engine.study.points.values([k])[0])).trajectory
+    path = run_case(engine.study.case_at(engine.study.points.values([k])[0])).trajectory
     end = np.array([records["end_x"][k], records["end_y"][k]])
     assert path.path_length > 5e-8
     assert end == pytest.approx(path.position[-1], rel=1e-6)
