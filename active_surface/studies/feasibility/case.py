@@ -32,7 +32,7 @@ from active_surface.studies.feasibility.chart import (
 )
 from active_surface.studies.feasibility.ground import Ground, make_ground, valid_strokes
 from active_surface.studies.feasibility.result import Feasibility
-from active_surface.studies.frequency_range import range_fault
+from active_surface.studies.response import range_fault
 from common import quantity_text
 from coupling import Progress, borders, build_drives, build_part, check_case, silent
 from coupling.case import Case, PlateCase, largest_stroke

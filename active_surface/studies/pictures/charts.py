@@ -135,7 +135,8 @@ def _draw_points(
     places = np.stack([across.drawn, heights], axis=1)[known]
     if others and len(places) > FEW_POINTS:
         draw_nearest(axes, [across, others[0]], places, colours[known], look)
-    return axes.scatter(places[:, 0], places[:, 1], c=colours[known], **look, **marks(len(known), bool(others)))
+    x, y = places.T
+    return axes.scatter(x, y, c=colours[known], **look, **marks(len(known), bool(others)))
 
 
 def marks(count: int, over_colours: bool = False) -> dict[str, Any]:

@@ -7,12 +7,14 @@ Under h_i exp(i w t) each mode answers with eta_n = m_ni w^2 h_i / (omega_n^2 - 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
+from common import quantity_text
 from fem_plate import Excitation, ExcitedModes, InfluenceShapes
 
 ComplexArray = NDArray[np.complex128]
@@ -60,3 +62,20 @@ def _of_modes(
         answer = w**2 / (omega**2 - w**2 + 2j * ratio * omega * w)
     moving = np.einsum("kn,ni,nf->kif", values, modes.participation, answer, optimize=True)
     return np.asarray(static[:, :, None] + moving)
+
+
+def range_fault(
+    caller: str, lowest: float | None, highest: float | None, low: float, high: float, defaults: tuple[str, str]
+) -> str | None:
+    """What is wrong with frequencies from low to high [Hz], in the words of those that were given; None: nothing.
+
+    lowest, highest: as given.  defaults: what low and high are where these are None.
+    """
+    if 0 < low < high < math.inf:
+        return None
+    bottom, top = (quantity_text(frequency, "Hz", 6) for frequency in (low, high))
+    if lowest is None:
+        by_default = f"by default {defaults[0]}, {bottom}"
+        return f"Input highest of {caller} must be above the lowest, {by_default}, and finite; got {top}"
+    default = f"by default {defaults[1]}, " if highest is None else ""
+    return f"Input lowest of {caller} must be positive and below the highest, {default}{top}; got {bottom}"

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.frequency_range import range_fault
-from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response
+from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response, range_fault
 from common import draw, quantity_text, range_text
 from coupling import Progress, one_blas_thread, silent, whole_file
 from coupling.case import SAME_PLACE, Case, PlateCase
