@@ -277,7 +277,8 @@ def test_thresholds_state_the_pull_just_before_a_part_comes_off_unslipped():
     assert thresholds.comes_off_from > 1
     near = run_case(scaled_case(sticky.case, 0.98 * thresholds.comes_off_from, 1.0)).summary
     assert near.margins.slip.value == pytest.approx(thresholds.holds, rel=1e-4) and 0 < thresholds.holds < 1
-    assert f"the pull is {thresholds.holds:.2g} of the friction limit" in dict(report.lines(sticky.summary))["thresholds"]
+    said = dict(report.lines(sticky.summary))["thresholds"]
+    assert f"the pull is {thresholds.holds:.2g} of the friction limit" in said
 
 
 @pytest.mark.slow
