@@ -240,6 +240,7 @@ def coarse(monkeypatch):
         monkeypatch.setattr(f"active_surface.studies.feasibility.case.{name}", value)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_command_writes_map_and_labelled_data(tmp_path, coarse):
     import xarray

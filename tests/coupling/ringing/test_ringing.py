@@ -137,6 +137,7 @@ def test_a_steady_state_is_what_a_run_from_rest_comes_to():
             np.testing.assert_allclose(now, then, rtol=0, atol=2e-4 * np.abs(then).max() + 1e-30)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_without_a_common_period_there_is_no_steady_state():
     plate = model(0.5 * THICKNESS, 0.1, 100e3, steady=True)
