@@ -1,6 +1,6 @@
-"""Write docs/validation.md's tables: published values beside ours. Run: python docs/scorecard.py
+"""Compare published values with ours: single values in benchmarks/PUBLISHED.md, one row per source in docs/accuracy.md.
 
-With --check it writes nothing, and fails if the tables of the page are others.
+Run `python docs/scorecard.py` to write both; with --check it writes nothing, and fails if either page differs.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ from fem_plate import Plate, PlateSection
 from meshes import disc, rectangle
 
 HERE = Path(__file__).parent
+SINGLE, SUMMARY = HERE.parent / "benchmarks/PUBLISHED.md", HERE / "accuracy.md"
 CELLS = 10  # along a side
 ACROSS = 9  # actuators along a mirror
+HEAD, RULE = "| source | values | largest difference | reason, where known |", "|---|---:|---:|---|"
 FACTORS = {  # of what the plate gives, to the published unit, for a section of rigidity 1 where none is given
     "frequency, Hz": 1.0,
     "lambda^2 = omega a^2 sqrt(rho t / D)": 2 * math.pi,
@@ -102,13 +104,13 @@ def published(table: dict[str, Any]) -> list[float]:
     return [half * (1 / (1 + up / case) - 1 / (1 + up / back)) for case in table["cases"]]
 
 
-def lines(table: dict[str, Any]) -> list[str]:
-    """A table as Markdown. A mirror's values are compared by their share of the peak, which is 1."""
-    share = table.get("kind") == "mirror"
-    cases = [f"| {_text(case)} " for case in table["cases"]] if "cases" in table else [""] * len(table["published"])
+def lines(table: dict[str, Any], pairs: list[tuple[float, float]]) -> list[str]:
+    """A table of single values as Markdown, from pairs of published values and ours."""
+    share = of_the_peak(table)
+    cases = [f"| {_text(case)} " for case in table["cases"]] if "cases" in table else [""] * len(pairs)
     rows = [
         f"{case}| {theirs:.6g} | {value:.{'4f' if share else '6g'}} | {_off(theirs, value, share)} |"
-        for case, theirs, value in zip(cases, published(table), ours(table), strict=True)
+        for case, (theirs, value) in zip(cases, pairs, strict=True)
     ]
     head = f"| published: {table['quantity']} | ours | published {'less' if share else 'over'} ours |"
     head = f"| {table['case']} {head}" if "cases" in table else head
@@ -116,6 +118,19 @@ def lines(table: dict[str, Any]) -> list[str]:
     remark = [table["remark"], ""] if "remark" in table else []
     source = f"[{table['source']}]({table['address']})."
     return [f"## {table['title']}", "", source, "", head, rule, *rows, "", *remark]
+
+
+def row(table: dict[str, Any], pairs: list[tuple[float, float]]) -> str:
+    """The row of a table in the summary: its largest difference, and the reason for it."""
+    share = of_the_peak(table)
+    theirs, value = max(pairs, key=lambda pair: abs(pair[0] - pair[1] if share else pair[0] / pair[1] - 1))
+    cells = [f"[{table['title']}]({table['address']})", len(pairs), _off(theirs, value, share), table.get("reason", "")]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def of_the_peak(table: dict[str, Any]) -> bool:
+    """Whether values are compared by their share of the peak, which is 1: those of a mirror."""
+    return table.get("kind") == "mirror"
 
 
 def _mesh(table: dict[str, Any]) -> Any:
@@ -133,13 +148,17 @@ def _text(case: Any) -> str:
 
 def main() -> None:
     tables = tomllib.loads((HERE / "published.toml").read_text())["table"]
-    page, rows = HERE / "validation.md", [line for table in tables for line in lines(table)][:-1]
-    if "--check" not in sys.argv:
-        write(page, "scorecard", rows)
-    elif "\n".join(rows) not in page.read_text():
-        sys.exit(
-            f"{page} has other tables than scorecard.py writes: {[row for row in rows if row not in page.read_text()]}"
-        )
+    compared = [(table, list(zip(published(table), ours(table).tolist(), strict=True))) for table in tables]
+    pages = {
+        SINGLE: [line for table, pairs in compared for line in lines(table, pairs)][:-1],
+        SUMMARY: [HEAD, RULE, *(row(table, pairs) for table, pairs in compared)],
+    }
+    for page, rows in pages.items():
+        if "--check" not in sys.argv:
+            write(page, "scorecard", rows)
+        elif "\n".join(rows) not in page.read_text():
+            other = [line for line in rows if line not in page.read_text()]
+            sys.exit(f"{page} differs from what scorecard.py writes: {other}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Published values: none is off by more than its remark explains. `make site` compares the page's tables with ours."""
+"""Published values: none is off by more than its remark explains. `make site` compares the tables with ours."""
 
 import tomllib
 from pathlib import Path
