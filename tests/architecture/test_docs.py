@@ -66,6 +66,19 @@ def test_pages_read_on_a_code_host():
     assert [(name(page), found) for page in DOCS for found in DIRECTIVES.findall(page.read_text())] == []
 
 
+def test_architecture_has_every_room_and_no_others():
+    """The tree by its indents: of the packages, and of all folders in them that are packages."""
+    tree, path = FENCE.findall((ROOT / "docs/architecture.md").read_text())[0], []
+    named = []
+    for indent, folder in re.findall(r"^( *)([\w/.]+)/ ", tree, flags=re.MULTILINE):
+        path[len(indent) // 2 :] = [folder]
+        named.append("/".join(path))
+    packages = [folder for folder in named if "/" not in folder and (ROOT / folder / "__init__.py").exists()]
+    rooms = [str(door.parent.relative_to(ROOT)) for top in packages for door in (ROOT / top).rglob("__init__.py")]
+    assert len(packages) == 6
+    assert Counter(folder for folder in named if folder.split("/")[0] in packages) == Counter(rooms)
+
+
 def test_site_shows_every_page(extension):
     contents = extension("contents").CONTENTS
     shown = [
