@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from importlib.resources import files
+from io import StringIO
 from pathlib import Path
 from string import Template
 from time import perf_counter
 from typing import Any, Final, NamedTuple
 
-from active_surface.paper.bench import MODELS, PAPER, PARAMETERS, QUICK, Bench, Effort, Parameters
+from active_surface.paper.bench import MODELS, PARAMETERS, QUICK, Bench, Effort, Parameters
 from active_surface.paper.dead_zones import dead_zones
 from active_surface.paper.feasible_area import feasible_area
 from active_surface.paper.one_actuator import accuracy, convergence, translocation
 from active_surface.paper.picture import FigureResult, Found, draw
+from active_surface.paper.statements import STATEMENTS
 from active_surface.paper.strokes import deceleration, friction_logic, radial
 from active_surface.paper.threshold import threshold
 from active_surface.paper.two_actuators import handover, neighbours
-from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Share, Verdict
+from active_surface.paper.verdict import NOT, PARTLY, REPRODUCED, SAME, Share, Verdict
 from coupling import Progress, silent, whole_file
 
 FIGURES: Final[dict[tuple[str, ...], Callable[[Bench], Found]]] = {
@@ -38,8 +41,9 @@ FIGURES: Final[dict[tuple[str, ...], Callable[[Bench], Found]]] = {
 }
 """What computes them, by the names of figures that share a picture, in the order of the page."""
 ALL: Final = "all"
-FOLDER, PAGE = "paper", "paper.md"
-SAID = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**", BEYOND: "-"}
+FOLDER, PAGE, TABLE = "paper", "paper.md", "verdicts.csv"
+COLUMNS = ("scheme", "ours", "plate")  # of the page, by MODELS
+SAID = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**"}
 
 
 class Reproduction(NamedTuple):
@@ -83,7 +87,8 @@ def reproduce(
     names : sequence of str
         Names of the figures; empty: all.
     output : path, optional
-        Folder for a picture and a JSON file of each figure, and for the page when all are reproduced with PARAMETERS.
+        Folder for a picture and a JSON file of each figure. The page and a CSV file of its verdicts are written there,
+        too, when all are reproduced with PARAMETERS.
     effort : Effort
         Numbers of starts, frequencies and places: `QUICK` or `FULL`.
     parameters : Parameters
@@ -107,9 +112,10 @@ def reproduce(
             written += write(results[-1], Path(output) / FOLDER)
     seconds = perf_counter() - begun
     if output is not None and len(groups) == len(FIGURES) and parameters is PARAMETERS:
-        written.append(Path(output) / PAGE)
-        with whole_file(written[-1]) as partial:
-            partial.write_text(page_of(results, effort))
+        written += [Path(output) / FOLDER / TABLE, Path(output) / PAGE]
+        for file, text in zip(written[-2:], (table_of(results), page_of(results, effort)), strict=True):
+            with whole_file(file) as partial:
+                partial.write_text(text)
     return Reproduction(tuple(results), tuple(written), seconds)
 
 
@@ -146,11 +152,11 @@ def rounded(value: Any) -> Any:
 def page_of(results: Sequence[FigureResult], effort: Effort) -> str:
     """page.md with the verdicts on PARAMETERS; pictures and data are in FOLDER beside it."""
     verdicts = [verdict for one in results for verdict in one.verdicts]
-    head = ["figure", "the paper", "verdict", *MODELS.values()]
+    head = ["figure", "the paper", *COLUMNS, "found"]
     rows = [head, ["---"] * len(head)]
     for verdict in verdicts:
-        cells = [_cell(verdict, model) for model in MODELS]
-        rows.append([verdict.figure, verdict.statement, SAID[verdict.verdict], *cells])
+        said = [SAID[verdict.answers[model].verdict] if _judged(verdict, model) else "-" for model in MODELS]
+        rows.append([verdict.figure, verdict.statement, *said, _found(verdict)])
     page = Template(files("active_surface.paper").joinpath("page.md").read_text()).substitute(
         full=" --full" if effort.name == "full" else "",
         counted=counted(verdicts),
@@ -158,7 +164,22 @@ def page_of(results: Sequence[FigureResult], effort: Effort) -> str:
         by_steps=effort.starts_by_steps,
         table="\n".join("| " + " | ".join(row) + " |" for row in rows),
     )
-    return page.replace(" um", " µm").replace("m/s^2", "m/s²")
+    return _typeset(page)
+
+
+def table_of(results: Sequence[FigureResult]) -> str:
+    """How every statement was judged, with the verdict and the numbers of each model, as CSV."""
+    how = {one.figure: one.how for one in STATEMENTS}
+    columns = [f"{name}: {column}" for name in MODELS.values() for column in ("verdict", "found")]
+    rows = [["figure", "the paper", "how it is judged", *columns]]
+    for verdict in (verdict for one in results for verdict in one.verdicts):
+        rows.append([verdict.figure, verdict.statement, how[verdict.figure]])
+        for model in MODELS:
+            rows[-1] += [verdict.answers[model].verdict if _judged(verdict, model) else "-"]
+            rows[-1] += [verdict.answers[model].text if model in verdict.answers else "-"]
+    text = StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return _typeset(text.getvalue())
 
 
 def counted(verdicts: Sequence[Verdict]) -> str:
@@ -170,8 +191,14 @@ def counted(verdicts: Sequence[Verdict]) -> str:
     return f"Statements that hold: {'; '.join(counts)}."
 
 
-def _cell(verdict: Verdict, model: str) -> str:
-    if model not in verdict.answers:
-        return "-"
-    answer = verdict.answers[model]
-    return answer.text if verdict.beyond or model == PAPER else f"{SAID[answer.verdict]}: {answer.text}"
+def _judged(verdict: Verdict, model: str) -> bool:
+    return model in verdict.answers and not verdict.beyond
+
+
+def _found(verdict: Verdict) -> str:
+    """By the paper's scheme, or by the first model that has something to do with the statement."""
+    return next(answer.text for answer in verdict.answers.values() if answer.text != SAME)
+
+
+def _typeset(text: str) -> str:
+    return text.replace(" um", " µm").replace("m/s^2", "m/s²")

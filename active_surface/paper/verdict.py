@@ -70,6 +70,7 @@ class Statement(NamedTuple):
     text: Callable[[Numbers], str] = lambda n: str(n["share"])  # a model's answer, from what was measured in it
     checks: Callable[[Numbers], Sequence[float | Share]] = lambda n: [n["share"]]  # each 1 where it is met, 0 where not
     beyond: bool = False  # no statement of the paper: nothing to judge
+    how: str = ""  # it is judged, where the sentence leaves that open
 
     def answer(self, numbers: Numbers) -> Answer:
         """The answer that numbers give."""

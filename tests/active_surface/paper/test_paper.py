@@ -1,19 +1,22 @@
 """Figures of the paper: each runs in a tiny mode and has its verdicts; names that the command takes."""
 
+import csv
 import json
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from active_surface.paper import reproduction
-from active_surface.paper.bench import MODELS, PARAMETERS, TINY, Bench
+from active_surface.paper.bench import MODELS, PARAMETERS, QUICK, TINY, Bench
 from active_surface.paper.dead_zones import touched
 from active_surface.paper.picture import draw
-from active_surface.paper.reproduction import FIGURES, figures_of, found_of, page_of, reproduce, rounded
+from active_surface.paper.reproduction import FIGURES, figures_of, found_of, page_of, reproduce, rounded, table_of
 from active_surface.paper.statements import STATEMENTS
-from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED
+from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Answer, Verdict
 
 pytestmark = pytest.mark.compiled
 
@@ -42,9 +45,10 @@ def test_figure_runs_and_is_written(group, bench):
     json.dumps(rounded([found.data, [verdict.as_dict() for verdict in found.verdicts]]), allow_nan=False)
     page = page_of([found], TINY)
     assert f"({reproduction.FOLDER}/{found.name}.png)" in page and f"({reproduction.FOLDER}/{found.name}.json)" in page
+    rows = {row[0]: row for row in csv.reader(table_of([found]).splitlines())}
     for verdict in found.verdicts:
         figure = verdict.figure.replace(" um", " µm")
-        assert f"| {figure} |" in page and f"**{figure}**" in page
+        assert f"| {figure} |" in page and len(rows[figure]) == len(rows["figure"]) and all(rows[figure])
 
 
 @pytest.mark.slow
@@ -55,8 +59,27 @@ def test_some_figures_are_written_and_a_page_of_all_only(bench, monkeypatch, tmp
     assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "4 (reversals)", "11", "12"}
     monkeypatch.setattr(reproduction, "FIGURES", {group: FIGURES[group] for group in (("fig3", "fig4"),)})
     assert reproduce([], tmp_path, TINY, replace(PARAMETERS)).files == done.files[:2]  # other parameters: no page
-    *_, page = reproduce([], tmp_path, TINY).files
+    *_, table, page = reproduce([], tmp_path, TINY).files
+    assert table == tmp_path / "paper" / "verdicts.csv" and table.read_text().startswith(
+        "figure,the paper,how it is judged"
+    )
     assert "Statements that hold: paper's scheme, closed form, 2 of 3" in page.read_text()
+
+
+def test_stored_page_and_table_are_those_of_the_stored_verdicts():
+    """So a change of their texts is written without the minutes that the numbers take."""
+    docs = Path(__file__).parents[3] / "docs"
+    stored = []
+    for group in FIGURES:
+        name = "-".join(group).replace("-fig", "-")
+        for one in json.loads((docs / "paper" / f"{name}.json").read_text())["verdicts"]:
+            answers = {model: Answer(answer["text"], answer["met"]) for model, answer in one["answers"].items()}
+            beyond = one["verdict"] == BEYOND
+            stored.append(Verdict(one["figure"], one["statement"], answers, one["numbers"], beyond))
+    assert [(one.figure, one.statement) for one in stored] == [(one.figure, one.says) for one in STATEMENTS]
+    found = [SimpleNamespace(verdicts=stored)]
+    assert (docs / "paper.md").read_text() == page_of(found, QUICK)
+    assert (docs / "paper" / "verdicts.csv").read_text() == table_of(found)
 
 
 def test_names_of_figures():
