@@ -141,3 +141,12 @@ def test_a_schema_refuses_broken_files_but_for_what_depends_on_other_fields_file
         with suppress(tomllib.TOMLDecodeError):
             wrong = list(checker("case").iter_errors(tomllib.loads(path.read_text())))
             assert wrong or path.stem in {"contradictions", "formulas", "measured_points", "outside"}
+
+
+def test_page_of_the_case_file_has_every_field() -> None:
+    page = (EXAMPLES.parent / "docs/case-file.md").read_text()
+    fields = {name for table in all_tables(CaseTables) for name in table.model_fields} - set(CaseTables.model_fields)
+    assert fields and [name for name in fields if f"`{name}`" not in page] == []
+    assert all(f"[{name}]" in page for name in CaseTables.model_fields)
+    for block in re.findall(r"```toml\n(.*?)```", page, flags=re.DOTALL):
+        tomllib.loads(block)
