@@ -1,4 +1,4 @@
-"""The tables and the picture of docs/howto/ring.md: how fast a wave carries a part around a ring, and how exactly.
+"""The figures and the picture of a ring in docs/howto/waves.md: how fast a wave carries a part, and how exactly.
 
 .venv/bin/python docs/ring_wave_pictures.py
 """
@@ -21,9 +21,11 @@ from coupling.case import Case
 from particle import SurfaceMotion, Trajectory, simulate
 
 DOCS = Path(__file__).parent
-PAGE = DOCS / "howto/ring.md"
+PAGE = DOCS / "howto/waves.md"
 CASE = DOCS.parent / "examples/ring_wave.toml"
-LIFTS = (0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95)  # A w^2 over the load per mass, of the table
+LIFTS = (0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95)  # A w^2 over the load per mass
+LIFT = 0.8  # of these, in the text
+SHOWN = (602, 630, 658)  # Hz, in the text
 STARTS = (5.4e-3, 6.2e-3, 7.0e-3)  # m from the centre
 ON_TRACK = 0.9  # s, long enough to see whether parts stay on the track
 MILLI, MICRO = 1e3, 1e6
@@ -33,15 +35,14 @@ def landings(path: Trajectory) -> list[float]:
     return [event.time for event in path.events if event.kind.name == "LANDS"]
 
 
-def purity(ring: Ring) -> list[str]:
+def purity(ring: Ring) -> str:
     """The waves at the wave's frequency on the crest's circle, over the wave itself."""
     circle = int(np.argmin(np.abs(RADII - ring.field.crest)))
     at = int(np.argmin(np.abs(2 * math.pi * ring.responses.frequencies - ring.rate)))
     forces = np.array([(one.force or 0.0) * np.exp(1j * one.phase) for one in ring.case.actuators])
     waves = np.abs(np.fft.fft(ring.responses.values[circle, :, :, at] @ (forces * is_inner(ring.case)))) / PLACES
-    lines = ["| turns around the ring | amplitude over that of the wave |", "|---|---:|"]
-    named = ((-2, "2, with the wave"), (2, "2, against it"), (4, "4, against it"), (-8, "8, with it"))
-    return [*lines, *(f"| {name} | {waves[n] / waves[-WAVES]:.1e} |" for n, name in named)]
+    back, others = waves[WAVES] / waves[-WAVES], max(waves[n] / waves[-WAVES] for n in (4, -8))
+    return f"Of the wave {back:.1e} runs back; others reach {others:.1e}."
 
 
 def lift_off(ring: Ring) -> tuple[float, float]:
@@ -61,58 +62,46 @@ def lift_off(ring: Ring) -> tuple[float, float]:
     return G + least / mass, -sunk
 
 
-def over_amplitude(ring: Ring) -> tuple[list[str], np.ndarray]:
+def over_amplitude(ring: Ring) -> np.ndarray:
     """The wave alone, on the circle of its crest: speeds (k, 3) [m/s] of the run, by scipy, without friction."""
     alone = ring.driven(track=0.0)
-    lines = ["| A w^2 over load | amplitude, um | speed, mm/s | scipy, mm/s | with hardly any friction, mm/s |"]
-    lines.append("|---:|---:|---:|---:|---:|")
     speeds = []
     for lift in LIFTS:
         one = ring.driven(lift / alone.lift, track=0.0)
         radius = one.field.crest
         speeds.append((one.speed(radius), one.by_scipy(radius), one.sliding))
-        texts = (f"{MILLI * speed:.3f}" for speed in speeds[-1])
-        lines.append(f"| {lift:g} | {MICRO * one.field.wave(radius, -WAVES):.2f} | {' | '.join(texts)} |")
-        print(lines[-1], flush=True)
-    return lines, np.array(speeds)
+        print(lift, MICRO * one.field.wave(radius, -WAVES), [f"{MILLI * speed:.3f} mm/s" for speed in speeds[-1]])
+    return np.array(speeds)
 
 
-def over_frequency(ring: Ring) -> tuple[list[str], np.ndarray]:
+def over_frequency(ring: Ring) -> np.ndarray:
     """On the track, with the forces of the example: speeds (k, 2) [m/s] of the run and by scipy."""
-    lines = [
-        "| frequency, Hz | amplitude, um | A w^2 over load | speed, mm/s | scipy, mm/s |",
-        "|---:|---:|---:|---:|---:|",
-    ]
     speeds = []
     for frequency in FREQUENCIES:
         one = ring.driven(frequency=frequency)
         radius = ring.case.part.position[0]
         speeds.append((one.speed(radius), one.by_scipy(radius)))
-        amplitude, texts = one.field.wave(one.field.crest, -WAVES), (f"{MILLI * speed:.3f}" for speed in speeds[-1])
-        lines.append(f"| {frequency} | {MICRO * amplitude:.2f} | {one.lift:.3f} | {' | '.join(texts)} |")
-        print(lines[-1], flush=True)
-    return lines, np.array(speeds)
+        amplitude = one.field.wave(one.field.crest, -WAVES)
+        print(frequency, MICRO * amplitude, one.lift, [f"{MILLI * speed:.3f} mm/s" for speed in speeds[-1]], flush=True)
+    return np.array(speeds)
 
 
 def on_track(ring: Ring) -> list[str]:
-    lines = [
-        "| start, mm | last landing, ms | after 0.9 s, mm | speed in the last third, mm/s |",
-        "|---:|---:|---:|---:|",
-    ]
     times = np.linspace(2 * ON_TRACK / 3, ON_TRACK, 1001)
+    ends, speeds, last = [], [], []
     for radius in STARTS:
         path = ring.follow(radius, ON_TRACK)
         places = path.at(times).position
-        landed = [f"{MILLI * time:.0f}" for time in landings(path)[-1:]] or ["none"]
-        texts = (
-            f"{MILLI * radius:g}",
-            *landed,
-            f"{MILLI * math.hypot(*places[-1]):.2f}",
-            f"{MILLI * around(places, times):.2f}",
-        )
-        lines.append(f"| {' | '.join(texts)} |")
-        print(lines[-1], flush=True)
-    return lines
+        last += [f"{MILLI * time:.0f}" for time in landings(path)[-1:]] or ["no"]
+        ends.append(f"{MILLI * math.hypot(*places[-1]):.2f}")
+        speeds.append(f"{MILLI * around(places, times):.2f}")
+        print(radius, ends[-1], speeds[-1], last[-1], flush=True)
+    starts = ", ".join(f"{MILLI * radius:g}" for radius in STARTS)
+    return [
+        f"- After {ON_TRACK:g} s parts that start {starts} mm from the centre are at {', '.join(ends)} mm, "
+        f"with {', '.join(speeds)} mm/s.",
+        f"  Their last landings are after {', '.join(last)} ms.",
+    ]
 
 
 @contextmanager
@@ -144,15 +133,16 @@ def convergence(case: Case) -> list[str]:
     with closer("coupling.vibration.vibration.PIECES"):
         others["pieces in time whose error is a ten-thousandth"] = end(build_surface(case), given)
     way = np.linalg.norm(place - case.part.position)
-    lines = ["| change | the end moves by, um | of the way |", "|---|---:|---:|"]
-    for name, other in others.items():
-        away = float(np.linalg.norm(other - place))
-        lines.append(f"| {name} | {MICRO * away:.2g} | {away / way:.1e} |")
-        print(lines[-1], flush=True)
-    return lines
+    away = {name: float(np.linalg.norm(other - place)) / way for name, other in others.items()}
+    print(away, flush=True)
+    return [
+        f"The end moves by at most {max(away.values()):.1e} of the way with tolerances or an error of the modes "
+        "a hundredth as large,",
+        "or pieces in time with a ten-thousandth of the error.",
+    ]
 
 
-def leaving(ring: Ring) -> list[str]:
+def leaving(ring: Ring) -> str:
     """How a part that starts beside the crest's circle leaves it without the track."""
     crest, beside, off = ring.field.crest, 0.1e-3, 1e-3
     path = ring.driven(track=0.0).follow(crest + beside, 2.0)
@@ -160,16 +150,13 @@ def leaving(ring: Ring) -> list[str]:
     places = path.at(times).position
     end = int(np.argmax(np.hypot(*places.T) > crest + off))
     assert end, "it does not leave"
-    way = math.hypot(*(places[end] - places[0]))
-    lines = [
-        f"A part that starts {MILLI * beside:g} mm beyond that circle is {MILLI * off:g} mm beyond it after "
-        f"{times[end]:.2f} s and {MILLI * way:.1f} mm."
-    ]
-    print(lines[-1], flush=True)
-    return lines
+    return (
+        f"- Without the track a part that starts {MILLI * beside:g} mm beyond the crest's circle is {MILLI * off:g} mm "
+        f"beyond it after {times[end]:.2f} s."
+    )
 
 
-def turn(ring: Ring) -> tuple[list[str], np.ndarray]:
+def turn(ring: Ring) -> tuple[str, np.ndarray]:
     """One turn: its figures, and places (k, 2) [m] along it."""
     path = ring.follow(ring.case.part.position[0], TURN)
     times = np.linspace(0.0, TURN, 18001)
@@ -179,14 +166,13 @@ def turn(ring: Ring) -> tuple[list[str], np.ndarray]:
     assert end, "it does not get round"
     places = places[: end + 1]
     radii = MILLI * np.hypot(*places.T)
-    lines = [
-        "| time of a turn, s | cycles of the wave | radius, mm | mean speed, mm/s | landings |",
-        "|---:|---:|---:|---:|---:|",
-        f"| {times[end]:.2f} | {times[end] * ring.rate / 2 / math.pi:.0f} | {radii.min():.2f} to {radii.max():.2f} | "
-        f"{MILLI * around(places, times[: end + 1]):.2f} | {len(landings(path))} |",
-    ]
-    print(lines[-1], flush=True)
-    return lines, places
+    line = (
+        f"- A turn takes {times[end]:.2f} s or {times[end] * ring.rate / 2 / math.pi:.0f} cycles, "
+        f"at {radii.min():.2f} to {radii.max():.2f} mm and {MILLI * around(places, times[: end + 1]):.2f} mm/s, "
+        f"with {len(landings(path))} landings."
+    )
+    print(line, flush=True)
+    return line, places
 
 
 def draw(ring: Ring, way: np.ndarray, amplitudes: np.ndarray, frequencies: np.ndarray) -> None:
@@ -224,27 +210,26 @@ def draw(ring: Ring, way: np.ndarray, amplitudes: np.ndarray, frequencies: np.nd
 
 def main() -> None:
     ring = Ring.of(read_case(CASE))
-    write(PAGE, "purity", purity(ring))
     alone = ring.driven(track=0.0)
     load, sunk = lift_off(alone)
+    amplitudes, frequencies = over_amplitude(ring), over_frequency(ring)
+    round_trip, way = turn(ring)
+    shown = [f"{MILLI * frequencies[FREQUENCIES.index(frequency), 0]:.3f}" for frequency in SHOWN]
+    resonance = f"- The speed follows the resonance: {', '.join(shown)} mm/s at {', '.join(map(str, SHOWN))} Hz."
+    write(PAGE, "ring", [*on_track(ring), round_trip, leaving(ring), resonance])
+    run, _, sliding = MILLI * amplitudes[LIFTS.index(LIFT)]
     write(
         PAGE,
-        "lift-off",
+        "ring-trust",
         [
-            "On the crest's circle, 6.2 mm from the centre, the wave of the example accelerates the plate by",
-            f"{sunk:.2f} m/s^2. A part comes off if it is pressed on with less than {load:.2f} m/s^2 (by bisection).",
+            f"At {LIFT:g} of the load the wave alone carries the part at {run:.3f} mm/s, "
+            f"and with hardly any friction would at {sliding:.3f} mm/s.",
+            f"{purity(ring)} On the crest's circle the plate",
+            f"accelerates by {sunk:.2f} m/s^2; by bisection a part comes off below a load of {load:.2f} m/s^2.",
+            *convergence(ring.case),
         ],
     )
-    speeds, amplitudes = over_amplitude(ring)
-    write(PAGE, "amplitudes", speeds)
-    speeds, frequencies = over_frequency(ring)
-    write(PAGE, "frequencies", speeds)
-    write(PAGE, "leaving", leaving(ring))
-    write(PAGE, "track", on_track(ring))
-    figures, way = turn(ring)
-    write(PAGE, "turn", figures)
     draw(ring, way, amplitudes, frequencies)
-    write(PAGE, "convergence", convergence(ring.case))
     print(ring.field.crest, alone.lift, alone.creeps)
 
 

@@ -1,4 +1,4 @@
-"""The picture and the table of docs/howto/waves.md: how fast a wave carries a part, over its phase velocity.
+"""The picture and the table of a strip in docs/howto/waves.md: how fast a wave carries a part, over its phase velocity.
 
 .venv/bin/python docs/wave_pictures.py
 """
@@ -19,7 +19,9 @@ PAGE = DOCS / "howto/waves.md"
 WAVELENGTH, RAMP = 4e-3, 3  # m, cycles; of examples/wave.toml
 FREQUENCIES = (65, 130, 195, 255, 320, 360, 380, 390, 400, 410)  # Hz
 DRAWN = (195, 320, 390)  # Hz, of the paths in the picture
+SHOWN = (130, 195, 255, 320, 360, 380, 390, 410)  # Hz, in the table
 SETTLED, CYCLES = 20, 100  # cycles of the wave that are left out, and the last one
+RESTS = 1e-7  # m/s, up to which it does
 MILLI, MICRO, G = 1e3, 1e6, 9.80665
 
 
@@ -45,21 +47,32 @@ def main() -> None:
         driven = wave(surface, places, stroke, frequency, way)
         return simulate(driven, part, law, CYCLES / frequency, case.run.gravity, tolerance, after_detachment="fly")
 
-    lines = ["| phase velocity, m/s | acceleration / g | speed, um/s | tolerance 1e-11 | second half | flights |"]
-    lines.append("|---:|---:|---:|---:|---:|---:|")
     speeds: dict[int, list[float]] = {1: [], -1: []}
-    for way in (1, -1):
-        for frequency in FREQUENCIES:
+    hops = []  # whether it does, at each frequency
+    for frequency in FREQUENCIES:
+        flights = 0
+        for way in (1, -1):
             path, closer = follow(frequency, way, 1e-9), follow(frequency, way, 1e-11)
             speeds[way].append(speed(closer, frequency))
+            flights += sum(event.kind.name == "LANDS" for event in closer.events)
             shares = speed(path, frequency), speeds[way][-1], speed(closer, frequency, (SETTLED + CYCLES) // 2)
-            texts = (f"{MICRO * share:.1f}" for share in shares)
-            velocity, strength = way * WAVELENGTH * frequency, stroke * (2 * math.pi * frequency) ** 2 / G
-            flights = sum(event.kind.name == "LANDS" for event in closer.events)
-            lines.append(f"| {velocity:.2f} | {strength:.2f} | {' | '.join(texts)} | {flights} |")
-            print(lines[-1], flush=True)
-    write(PAGE, "speeds", lines)
+            print(way, frequency, [f"{MICRO * share:.1f} um/s" for share in shares], flights, flush=True)
+        hops.append(flights > 0)
+    write(PAGE, "speeds", table(stroke, speeds, hops))
     draw(speeds, {frequency: follow(frequency, 1, 1e-11) for frequency in DRAWN})
+
+
+def table(stroke: float, speeds: dict[int, list[float]], hops: list[bool]) -> list[str]:
+    """Speeds along the wave, with what the part does."""
+    lines = ["| phase velocity, m/s | acceleration / g | wave to the right, um/s | to the left, um/s | the part |"]
+    lines.append("|---:|---:|---:|---:|---|")
+    for frequency, right, left, hop in zip(FREQUENCIES, speeds[1], speeds[-1], hops, strict=True):
+        if frequency in SHOWN:
+            does = "hops" if hop else "stays in contact" if abs(right) > RESTS else "rests"
+            strength = stroke * (2 * math.pi * frequency) ** 2 / G
+            figures = f"{WAVELENGTH * frequency:.2f} | {strength:.2f} | {MICRO * right:.1f} | {MICRO * -left + 0.0:.1f}"
+            lines.append(f"| {figures} | {does} |")
+    return lines
 
 
 def draw(speeds: dict[int, list[float]], paths: dict[int, Trajectory]) -> None:

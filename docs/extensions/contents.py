@@ -26,10 +26,8 @@ CONTENTS = {  # the pages below a page, by caption
                 "howto/general-plates",
                 "howto/measured-motion",
                 "howto/waves",
-                "howto/ring",
             ),
-            *("howto/chladni", "howto/identify", "howto/optimisers"),
-            "howto/optics",
+            *("howto/identify", "howto/optimisers", "howto/optics"),
         ],
         "The program": [
             *("commands", "case-file", "results", "pictures", "app"),
