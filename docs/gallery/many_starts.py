@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 from coupling import surface_motion
 from fem_plate import Plate, PlateSection
 from meshes import disc
-from particle import ConstantFriction, Drive, Micropart, Outcome, simulate_many
+from particle import CoulombAdhesion, Drive, Micropart, Outcome, simulate_many
 
 RADIUS = 1e-3  # m
 ACTUATORS = [(-300e-6, 0.0), (300e-6, 0.0)]  # m
@@ -28,7 +28,9 @@ def draw(quick: bool = False) -> Figure:
     )
     starts = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     parts = [Micropart(2e-9, (x, y), centre_height=45e-6) for x, y in starts]
-    paths = simulate_many(surface, parts, ConstantFriction(4e-9), 2e-3 if quick else 120e-3, tolerance=1e-6)
+    paths = simulate_many(
+        surface, parts, CoulombAdhesion(0.04, adhesion=2.5e-6), 2e-3 if quick else 120e-3, tolerance=1e-6
+    )
 
     figure = Figure(figsize=(6, 5.6), layout="constrained")
     axes = figure.subplots()

@@ -17,7 +17,7 @@ SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=100e-6
 def draw(quick: bool = False) -> Figure:
     row, column = np.divmod(np.arange(25), 5)
     actuators = PITCH * np.stack([column - 2, row - 2], axis=1)
-    shapes = Plate(rectangle(6 * PITCH, 6 * PITCH, PITCH if quick else PITCH / 2), SECTION).influence(actuators)
+    shapes = Plate(rectangle(7 * PITCH, 7 * PITCH, PITCH if quick else PITCH / 2), SECTION).influence(actuators)
     drives = [Drive(0.6e-6, FREQUENCY, delay=(k % 6) / 6 / FREQUENCY) for k in row + column]
     surface = surface_motion(shapes, drives, surface_tolerance=1e-5, half_thickness=SECTION.thickness / 2)
     duration = 1.5e-3 if quick else 80e-3
