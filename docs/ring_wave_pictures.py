@@ -92,7 +92,7 @@ def on_track(ring: Ring) -> list[str]:
     for radius in STARTS:
         path = ring.follow(radius, ON_TRACK)
         places = path.at(times).position
-        last += [f"{MILLI * time:.0f}" for time in landings(path)[-1:]] or ["no"]
+        last += [f"{MILLI * time:.0f} ms" for time in landings(path)[-1:]] or ["none"]
         ends.append(f"{MILLI * math.hypot(*places[-1]):.2f}")
         speeds.append(f"{MILLI * around(places, times):.2f}")
         print(radius, ends[-1], speeds[-1], last[-1], flush=True)
@@ -100,7 +100,7 @@ def on_track(ring: Ring) -> list[str]:
     return [
         f"- After {ON_TRACK:g} s parts that start {starts} mm from the centre are at {', '.join(ends)} mm, "
         f"with {', '.join(speeds)} mm/s.",
-        f"  Their last landings are after {', '.join(last)} ms.",
+        f"  Last landings: {', '.join(last)}.",
     ]
 
 
@@ -136,8 +136,8 @@ def convergence(case: Case) -> list[str]:
     away = {name: float(np.linalg.norm(other - place)) / way for name, other in others.items()}
     print(away, flush=True)
     return [
-        f"The end moves by at most {max(away.values()):.1e} of the way with tolerances or an error of the modes "
-        "a hundredth as large,",
+        f"The end after {MILLI * case.run.duration:.0f} ms moves by at most {max(away.values()):.1e} of the way with tolerances or an "
+        "error of the modes a hundredth as large,",
         "or pieces in time with a ten-thousandth of the error.",
     ]
 
