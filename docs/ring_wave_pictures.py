@@ -136,8 +136,8 @@ def convergence(case: Case) -> list[str]:
     away = {name: float(np.linalg.norm(other - place)) / way for name, other in others.items()}
     print(away, flush=True)
     return [
-        f"The end after {MILLI * case.run.duration:.0f} ms moves by at most {max(away.values()):.1e} of the way with tolerances or an "
-        "error of the modes a hundredth as large,",
+        f"The end after {MILLI * case.run.duration:.0f} ms moves by at most {max(away.values()):.1e} of the way "
+        "with tolerances or an error of the modes a hundredth as large,",
         "or pieces in time with a ten-thousandth of the error.",
     ]
 
