@@ -55,7 +55,7 @@ class Footprint:
             There are fewer than three corners, one is no pair of numbers, sides cross, or there is no area.
         """
         wanted = "three or more pairs of lengths in m, in order around the part, whose sides do not cross"
-        pairs = [len(pair) == 2 and all(finite(value) for value in pair) for pair in corners]
+        pairs = [np.shape(pair) == (2,) and all(finite(value) for value in pair) for pair in corners]
         refuse("Footprint", [(len(pairs) >= 3 and all(pairs), "corners", wanted, corners)])
         points = np.array(corners, dtype=float)
         area, centroid, _ = _moments(points)
@@ -123,7 +123,8 @@ def _crosses(corners: FloatArray) -> bool:
     sides = list(zip(corners, np.roll(corners, -1, axis=0), strict=True))
     for i, (a, b) in enumerate(sides):
         for k, (c, d) in enumerate(sides[i + 2 :], i + 2):
-            if (i, k) == (0, len(sides) - 1):
+            low, high = np.maximum(np.minimum(a, b), np.minimum(c, d)), np.minimum(np.maximum(a, b), np.maximum(c, d))
+            if (i, k) == (0, len(sides) - 1) or (low > high).any():  # sides on one line may be apart
                 continue
             if _cross(a, b, c) * _cross(a, b, d) <= 0 and _cross(c, d, a) * _cross(c, d, b) <= 0:
                 return True

@@ -69,7 +69,8 @@ class FaceLaw:
 
     def __init__(self, contact: LocalContact, footprint: Footprint, hessian: ArrayLike) -> None:
         bend = np.array(hessian, dtype=float)
-        if bend.shape != (2, 2) or not np.isfinite(bend).all() or bend[0, 1] != bend[1, 0]:
+        rounding = 1e-9 * np.abs(bend).max(initial=0.0)  # of one that was turned into the face's axes
+        if bend.shape != (2, 2) or not np.isfinite(bend).all() or abs(bend[0, 1] - bend[1, 0]) > rounding:
             raise ValueError(f"Input hessian of on_face must be a symmetric 2 x 2 matrix in 1/m; got {hessian!r}")
         self.contact, self.footprint, self.hessian = contact, footprint, bend
         self._places, weights = footprint.rule(POINTS)
@@ -101,7 +102,7 @@ class FaceLaw:
             net, limit = self._pressures(height)
             weighed = self._weights * limit
             sums.append((self._weights @ net, weighed.sum(), weighed @ np.hypot(*self._places.T)))
-        net_loads, limits, torques = np.array(sums).T
+        net_loads, limits, torques = np.reshape(sums, (-1, 3)).T
         return net_loads, limits, torques
 
     @cached_property

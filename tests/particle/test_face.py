@@ -102,12 +102,27 @@ def test_footprints():
         assert (places.T * weights) @ places == pytest.approx(footprint.second_moments)
 
 
+def test_feet_on_one_line_are_apart():
+    arch = [(0, 0), (1, 0), (1, 1), (2, 1), (2, 0), (3, 0), (3, 2), (0, 2)]
+    assert Footprint.polygon(arch).area == 5.0
+
+
+def test_a_curvature_that_was_turned_is_that_of_the_turned_face():
+    turn = np.array([[math.cos(0.3), -math.sin(0.3)], [math.sin(0.3), math.cos(0.3)]])
+    bends, turned = np.diag([-80.0, -20.0]), turn.T @ np.diag([-80.0, -20.0]) @ turn
+    assert turned[0, 1] != turned[1, 0]  # by rounding
+    law = PAPER.on_face(DISC, turned)
+    assert law.pull_off == pytest.approx(PAPER.on_face(DISC, bends).pull_off, rel=1e-6)
+    assert law.friction_limit([]).shape == (0,)
+
+
 @pytest.mark.parametrize(
     "make, said",
     [
         (lambda: Footprint.rectangle(0, -1), "width of Footprint must be positive, in m; got 0; Input height"),
         (lambda: Footprint.disc(math.nan), "radius of Footprint must be positive, in m; got nan"),
         (lambda: Footprint.polygon([(0, 0), (1, 0)]), "corners of Footprint must be three or more pairs"),
+        (lambda: Footprint.polygon([0, 1, 2]), "corners of Footprint must be three or more pairs"),
         (lambda: Footprint.polygon([(0, 0), (1, 0), (2, 0)]), "whose sides do not cross"),
         (lambda: Footprint.polygon([(0, 0), (1, 1), (1, 0), (0, 1)]), "whose sides do not cross"),
         (lambda: PAPER.on_face(SQUARE, [[1, 2], [3, 4]]), "hessian of on_face must be a symmetric 2 x 2 matrix"),
