@@ -111,7 +111,7 @@ class Knobs:
         ends = []
         for knob, value in zip(self.knobs, values.tolist(), strict=True):
             value, room = value if knob.smooth else math.floor(value), AT_BOUND * (knob.high - knob.low)
-            if value >= knob.high - room:
+            if knob.high > 0 and value >= knob.high - room:
                 ends.append(Stop(knob, True))
             elif value <= knob.low + room and (knob.key == "frequency" or (knob.key == "stroke" and knob.low < 0)):
                 ends.append(Stop(knob, False))

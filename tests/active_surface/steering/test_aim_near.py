@@ -71,6 +71,9 @@ def test_stops_are_the_knobs_at_a_bound(case):
     ]
     assert [(stop.knob.key, stop.highest) for stop in knobs.stops(low)] == [("frequency", False)]
     assert not knobs.stops((low + high) / 2)
+    downwards = Knobs(case, Settings(stroke=(-12e-6, 0.0), frequency=(300.0, 300.0), cycles=(1, 1)), (0,))
+    assert not downwards.stops(np.array([0.0]))  # it rests: wider bounds do not move it more
+    assert [stop.highest for stop in downwards.stops(np.array([-12e-6]))] == [False]
 
 
 def test_the_smallest_step_is_the_damped_pseudoinverses_where_there_is_room_and_stays_in_it_elsewhere():
