@@ -37,7 +37,8 @@ def unit_for(values: ArrayLike, si: str) -> Unit:
 def quantity_text(value: float, si: str, digits: int = 3) -> str:
     """A value [si] with so many digits and its unit, such as "12.3 µm"."""
     unit = unit_for(value, si)
-    return f"{float(f'{value * unit.per_si:.{digits}g}'):g} {unit.name}"  # `g` alone turns 250 into 2.5e+02
+    number = float(f"{value * unit.per_si:.{digits}g}")
+    return f"{number:.{max(digits, 6)}g} {unit.name}"  # two digits alone turn 250 into 2.5e+02
 
 
 def quantity(value: float, si: str, digits: int = 3) -> str:
