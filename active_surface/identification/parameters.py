@@ -113,7 +113,7 @@ def _allowed(field: Field, value: float) -> bool:
 
 def _read(field: Field, bounds: Sequence[Any]) -> tuple[float, float]:
     """Bounds as they were given, texts with units or numbers in SI units."""
-    if isinstance(bounds, str) or len(bounds) != 2:
+    if np.shape(bounds) != (2,):
         raise ValueError(f"must be two values, such as {_example(field)}; got {quoted(bounds)}")
     low, high = (_number(field, one) for one in bounds)
     return low, high
