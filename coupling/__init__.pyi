@@ -13,6 +13,7 @@ from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import (
     check_folder as check_folder,
+    check_free as check_free,
     check_room as check_room,
     printable as printable,
     remove_partial_files as remove_partial_files,

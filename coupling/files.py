@@ -8,7 +8,7 @@ import re
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -69,6 +69,20 @@ def check_folder(folder: Path) -> None:
         raise ValueError(
             f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it"
         ) from None
+
+
+def check_free(files: Sequence[Path], overwrite: bool) -> None:
+    """Raises ValueError where files of one folder cannot be made, or are there and are not to be replaced."""
+    folder = files[0].parent
+    check_folder(folder)
+    for file in files:
+        if file.is_dir():
+            raise ValueError(f"Input output must be free for {file.name}; got {folder}, where that is a folder")
+    if not overwrite and (there := [file.name for file in files if file.exists()]):
+        names, what = " and ".join(there), "them" if len(there) > 1 else "it"
+        raise ValueError(
+            f"Input output must be free of other results; got {folder}, which has {names}: --overwrite replaces {what}"
+        )
 
 
 def check_room(folder: Path, needed: int, kept: str = "") -> None:

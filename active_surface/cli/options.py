@@ -53,12 +53,6 @@ def counted(pieces: str) -> Iterator[ProgressCallback]:
         yield tell
 
 
-def check_free(file: Path, overwrite: bool) -> None:
-    """Raise ValueError where a file would be replaced that shall not."""
-    if file.exists() and not overwrite:
-        raise ValueError(f"{file} exists; --overwrite replaces it")
-
-
 def amount_of(text: str | None, unit: str, name: str, example: str = "") -> float | None:
     """The quantity [unit] that an option gives; None: it is not given."""
     from coupling.case import Quantity

@@ -13,6 +13,7 @@ from active_surface.arrays import FloatArray
 from active_surface.identification.estimate import Estimate, TrackFit
 from active_surface.identification.track import Track
 from common import draw, notebook_html, quantity_text
+from coupling import check_free
 from coupling.case import Case, write_case
 from particle import Trajectory
 
@@ -152,7 +153,7 @@ class Identified:
         from coupling.pictures import save_picture  # here, because it loads matplotlib
 
         cases = {fit.case.name: fit for fit in self.fits}
-        *files, picture = check_free(folder, list(cases), overwrite)
+        *files, picture = free_files(folder, list(cases), overwrite)
         for file, fit in zip(files, cases.values(), strict=True):
             of = [one for one in self.estimates if one.case in (None, fit.name)]
             values = "\n".join(f"{one.field} = {one.text}" for one in of)
@@ -182,12 +183,8 @@ def case_names(cases: Sequence[Case], tracks: int, own: bool) -> list[str]:
     return names_of([f"{case.name}_identified" for case in cases], tracks if own else len(cases))
 
 
-def check_free(folder: Path, names: Sequence[str], overwrite: bool) -> list[Path]:
-    """The files of identified cases, and the picture's; ValueError where they exist and are not to be replaced."""
+def free_files(folder: Path, names: Sequence[str], overwrite: bool) -> list[Path]:
+    """The files of identified cases, and the picture's; ValueError where they cannot be made or replaced."""
     files = [*(folder / f"{name}.toml" for name in names), folder / f"{names[0]}.png"]
-    if not overwrite and (there := [str(file) for file in files if file.exists()]):
-        raise ValueError(
-            f"Input output of identify must be free of an earlier result; got {', '.join(there)}: "
-            "--overwrite replaces it"
-        )
+    check_free(files, overwrite)
     return files

@@ -22,7 +22,7 @@ from active_surface.steering.picture import draw_aim, draw_plan
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
 from active_surface.steering.task import Route, Task
-from coupling import ProgressCallback, no_progress, run_case, warnings
+from coupling import ProgressCallback, check_free, no_progress, run_case, warnings
 from coupling.case import write_case
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
 
@@ -220,15 +220,7 @@ def _files(task: Task | Route, output: str | Path | None, case: str, picture: st
         return ()
     folder = Path(output)
     files = folder / f"{task.name}_{case}.toml", folder / f"{task.name}_{picture}.png"
-    for file in files:
-        if file.is_dir():
-            raise ValueError(f"Input output must be free for {file.name}; got {folder}, where that is a folder")
-    existing = [file.name for file in files if file.exists()]
-    if existing and not overwrite:
-        names = " and ".join(existing)
-        raise ValueError(
-            f"Input output must be free of other results; got {folder}, which has {names}: --overwrite replaces them"
-        )
+    check_free(files, overwrite)
     return files
 
 

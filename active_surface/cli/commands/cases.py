@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import click
 
 from active_surface.cli.command import Answer, command, option
-from active_surface.cli.options import RESULTS, Output, Overwrite, check_free, stages
+from active_surface.cli.options import RESULTS, Output, Overwrite, stages
 from active_surface.cli.refusal import kind_of, read
 
 if TYPE_CHECKING:
@@ -96,11 +96,11 @@ def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -
     case to NAME_advised.toml.
     """
     parsed = read(case)
-    from coupling import advice, report, run_case, stage_count
+    from coupling import advice, check_free, report, run_case, stage_count
     from coupling.case import write_edited
 
     file = output / f"{parsed.name}{advice.ADVISED}.toml"
-    check_free(file, overwrite)
+    check_free([file], overwrite)
     with stages(stage_count(parsed)) as bar:
         result = run_case(parsed, None, bar)
         with bar("Trying other drives"):

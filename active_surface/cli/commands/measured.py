@@ -190,10 +190,10 @@ def identify(
     it. Writes NAME_identified.toml with the fields for each case, and NAME_identified.png.
     """
     cases = [read(file) for file in case]
-    from active_surface.identification import case_names, check_free, read_track
+    from active_surface.identification import case_names, free_files, read_track
     from active_surface.identification import identify as find
 
-    check_free(output, case_names(cases, len(track), bool(own)), overwrite)
+    free_files(output, case_names(cases, len(track), bool(own)), overwrite)
     tracks, ends = [read_track(file) for file in track], _bounds(bounds)
     with stages(IDENTIFYING) as bar:
         found = find(cases, tracks, free, ends, own, "absolute" if absolute else "squares", seed, threads, bar)

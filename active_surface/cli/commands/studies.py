@@ -11,7 +11,6 @@ from active_surface.cli.options import (
     Output,
     Threads,
     amount_of,
-    check_free,
     counted,
     place_of,
     point_of,
@@ -84,7 +83,7 @@ def feasibility(
     from active_surface.studies.feasibility import ACROSS, lines, warnings
     from active_surface.studies.feasibility import feasibility as find
     from active_surface.studies.feasibility import pick as pick_case
-    from coupling import answers_drives
+    from coupling import answers_drives, check_free
     from coupling.case import largest_stroke
 
     unit = largest_stroke(parsed)[1]
@@ -93,7 +92,7 @@ def feasibility(
     point = None if pick is None else point_of(pick, unit, "--pick")
     target = output / f"{parsed.name}_picked.toml"
     if pick is not None:
-        check_free(target, overwrite)
+        check_free([target], overwrite)
     answers = answers_drives(parsed)
     count = STAGES + areas + answers + (PICKING + (point == ()) + answers if pick is not None else 0)
     with stages(count) as bar:

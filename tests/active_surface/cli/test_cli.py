@@ -195,7 +195,7 @@ def test_advise_writes_a_case_which_moves(tmp_path):
     kept, written = file.read_text().splitlines(), new.read_text().splitlines()
     assert len([line for line in written[2:] if line in kept]) > len(kept) / 2
     again = CliRunner().invoke(main, ["advise", str(file), *arguments])
-    assert again.exit_code == 2 and f"{new} exists; --overwrite replaces it" in again.output
+    assert again.exit_code == 2 and f"which has {new.name}: --overwrite replaces it" in again.output
     moved = json.loads(CliRunner().invoke(main, ["run", str(new), *arguments]).stdout)
     assert moved["distance"] == pytest.approx(still["trial"]["distance"], rel=1e-3)
 

@@ -150,6 +150,7 @@ LATE = Track(np.array([0.1, 0.3]), np.zeros((2, 2)))
         ({"free": ["part.position.0"]}, "bounds of part.position.0 of identify must be given"),
         ({"bounds": {"friction.coefficient": (3, 2)}}, "bounds of friction.coefficient .* must increase; got 3 and 2"),
         ({"bounds": {"friction.coefficient": ("a", "b")}}, "must be two plain numbers; got .a."),
+        ({"bounds": {"friction.coefficient": 0.2}}, "must be two values, such as 0.1, 0.9; got 0.2"),
         ({"bounds": {"part.mass": (1, 2)}}, "bounds of identify must be of free fields; got part.mass"),
         ({"free": []}, "free of identify must name at least one field"),
         ({"track": LATE}, "track of identify must end within the run's duration, 0.2 s; got 0.3 s"),
@@ -194,7 +195,7 @@ def test_the_command_writes_the_case_and_a_picture(tmp_path, monkeypatch):
     assert (tmp_path / "results/braking_identified.png").stat().st_size > 10_000
     before = (tmp_path / "results/braking_identified.toml").read_bytes()
     for more, said in (
-        ([], "--overwrite replaces it"),
+        ([], "--overwrite replaces them"),
         (["friction.coeficient", "--overwrite"], "did you mean coefficient?"),
         (["--bounds", "part.squeeze", "--overwrite"], '--bounds must be like "part.squeeze=1 nN,10 nN"'),
     ):
