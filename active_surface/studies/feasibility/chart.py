@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
 from active_surface.studies.feasibility.ground import Ground
+from active_surface.studies.feasibility.losses import CLOSE, find_losses, margin_of
 from coupling import borders
 
 State = Literal["rest", "moves", "lost", "either"]
@@ -37,7 +38,7 @@ class Column:
     @property
     def ragged(self) -> bool:
         """Whether strokes that lose the part and others lie side by side."""
-        return self.all_lost > self.lost * borders.CLOSE**2
+        return self.all_lost > self.lost * CLOSE**2
 
 
 def find_slip(ground: Ground, frequency: float, strokes: tuple[float, float], guess: float = 1.0) -> float:
@@ -75,15 +76,15 @@ def find_column(
 
     def run(more: Sequence[float]) -> list[float]:
         paths = ground.paths([(frequency, stroke) for stroke in more], threads)
-        return [borders.margin_of(path, ground.friction, ground.outline) for path in paths]
+        return [margin_of(path, ground.friction, ground.outline) for path in paths]
 
     lowest = slips * (1 + 2 * EXACT)
     low = max(NEAR * slips * _expected_loss(frequency, beside), lowest)
     if lowest < low < strokes[1]:
-        first, last, runs = borders.find_losses(run, slips, low, strokes[1])
+        first, last, runs = find_losses(run, slips, low, strokes[1])
         if first > low:
             return Column(frequency, slips, first, last, runs)
-    first, last, runs = borders.find_losses(run, slips, lowest, strokes[1])
+    first, last, runs = find_losses(run, slips, lowest, strokes[1])
     return Column(frequency, slips, max(first, slips), last, runs)
 
 

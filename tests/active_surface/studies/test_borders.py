@@ -9,6 +9,7 @@ from numpy.random import default_rng
 
 from active_surface.studies.feasibility.chart import find_column, find_slip, make_chart
 from active_surface.studies.feasibility.ground import make_ground
+from active_surface.studies.feasibility.losses import CLOSE
 from coupling import borders, build_drives, build_friction, build_part, build_scene
 from coupling.case import (
     ActuatorCase,
@@ -157,7 +158,7 @@ def test_between_two_columns_alike_fewer_runs_find_the_same_border(charts):
     strokes = chart.strokes
     ends = [find_column(ground, k, strokes) for k in (0.9, 1.1)]
     alone, between = find_column(ground, 1.0, strokes), find_column(ground, 1.0, strokes, ends)
-    assert abs(math.log(between.lost / alone.lost)) < math.log(borders.CLOSE)
+    assert abs(math.log(between.lost / alone.lost)) < math.log(CLOSE)
     kept = [sum(margin > 0 for margin in one.runs.values()) for one in (alone, between)]
     assert 0 < kept[1] < kept[0]
     wrong = [replace(one, lost=1.05 * one.lost, all_lost=1.05 * one.all_lost) for one in ends]
