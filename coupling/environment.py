@@ -25,10 +25,15 @@ def refuse_shadows(*packages: str) -> None:
 
 def versions(packages: Sequence[str] = PACKAGES) -> dict[str, str]:
     """The versions of what computes a path; that of active-surface has a hash of the sources of these packages."""
+    numbers = _installed()
+    return numbers | {OURS: f"{numbers[OURS]}+{_sources(tuple(packages))}"}
+
+
+@cache
+def _installed() -> dict[str, str]:
     from importlib.metadata import version  # here, because every command loads this module first
 
-    numbers = {name: version(name) for name in (OURS, *OTHERS)}
-    return numbers | {OURS: f"{numbers[OURS]}+{_sources(tuple(packages))}"}
+    return {name: version(name) for name in (OURS, *OTHERS)}
 
 
 @cache

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from coupling.case import MAX_STRETCHING
 from coupling.drives import reach, stroke_heights
@@ -134,7 +133,9 @@ def training(sets: Sequence[Sequence[AnyDrive]], end: float) -> FloatArray:
         return np.concatenate([stroke_heights(drives, times) for drives in sets])
     bounds = np.array([[reach(drive) for drive in drives] for drives in sets])  # (sets, N, 2)
     low, high = bounds[:, :, 0].min(axis=0), bounds[:, :, 1].max(axis=0)
-    inside = qmc.Sobol(count, scramble=False).random_base2(math.ceil(math.log2(PLACES * count)))
+    from scipy.stats.qmc import Sobol  # here, because it takes a while
+
+    inside = Sobol(count, scramble=False).random_base2(math.ceil(math.log2(PLACES * count)))
     corners = np.stack(np.meshgrid(*[(0.0, 1.0)] * count, indexing="ij"), axis=-1).reshape(-1, count)
     return np.asarray(low + np.concatenate([corners, inside]) * (high - low))
 

@@ -86,11 +86,11 @@ def modal_motion(oscillators: Oscillators, drives: Sequence[AnyDrive], end: floa
     steady: they begin in the steady state of drives that repeat without end; else the plate begins at rest.
     Raises ValueError when a mode without damping resonates.
     """
-    height, velocity, _ = (np.stack([drive.evaluate(0.0)[k] for drive in drives]) for k in range(3))
     if steady:
         state, before = steady_state(oscillators, drives)
     else:
-        state, before = np.zeros((len(oscillators.omega), 2)), np.stack([height, np.zeros_like(velocity)], axis=1)
+        state, before = np.zeros((len(oscillators.omega), 2)), np.zeros((len(drives), 2))
+        before[:, 0] = [drive.evaluate(0.0)[0] for drive in drives]
     schedule = schedule_of(drives, end)
     table = drive_table(drives)
     if schedule.loop < 0:
