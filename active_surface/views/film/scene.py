@@ -31,7 +31,7 @@ MAX_WINDOW = 0.6  # of the plate's longer side: a wider window shows all of it
 FINE = 1 / 200  # of the longer side: the distance of the trail's points
 FLAT, ROUNDING = 1e-11, 1e-5  # m, and of the largest height: a smaller range of heights is none
 AROUND = 0.5  # of the longer side: points farther from the frame do not shape what is in it
-MAX_STEPS, BATCH = 500, 64  # that shapes are made of; that are read together
+BATCH = 64  # steps that are read together
 CROWDED = 1 / 60  # of the longer side: actuators nearer to each other are not marked
 SQUARES = 12  # of the net, about, along the longer side
 
@@ -233,10 +233,12 @@ def _modes(run: SavedRun, used: IntArray) -> tuple[FloatArray, FloatArray]:
     def heights(steps: slice) -> FloatArray:
         return np.asarray(run.plate_field("deflection", steps)[:, used], dtype=np.float64)
 
-    count = len(run.time)
-    shapes = modes_of(heights(slice(None, None, -(-count // MAX_STEPS)))).shapes
+    batches, shapes = [slice(k, k + BATCH) for k in range(0, len(run.time), BATCH)], np.empty((0, len(used)))
+    for some in batches:
+        modes = modes_of(np.concatenate([shapes, heights(some)]))
+        shapes = modes.shapes * np.abs(modes.amplitudes).max(axis=0)[:, None]
     inverse = np.linalg.pinv(shapes)
-    return shapes, np.concatenate([heights(slice(k, k + BATCH)) @ inverse for k in range(0, count, BATCH)])
+    return shapes, np.concatenate([heights(some) @ inverse for some in batches])
 
 
 def _refined(mesh: Triangulation, shapes: FloatArray) -> pv.PolyData:

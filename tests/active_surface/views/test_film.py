@@ -109,9 +109,9 @@ def test_heights_and_places_are_linear_between_stored_steps_and_the_state_is_tha
     assert [moment.state for moment in moments] == [State.STICK, State.STICK, State.SLIP, State.STICK]
 
 
-@pytest.mark.parametrize("most", [500, 7])
-def test_the_surface_is_that_of_the_run(monkeypatch, most):
-    monkeypatch.setattr(scenes, "MAX_STEPS", most)
+@pytest.mark.parametrize("together", [64, 7])
+def test_the_surface_is_that_of_the_run(monkeypatch, together):
+    monkeypatch.setattr(scenes, "BATCH", together)
     points = grid()[0]
     run = made_run(
         np.linspace([-4e-4, 0], [4e-4, 0], 40), np.stack([hill(points, 1e-6 * np.sin(k)) for k in range(40)])
@@ -122,6 +122,17 @@ def test_the_surface_is_that_of_the_run(monkeypatch, most):
         (moment,) = scene.moments(run.time[[k]])
         assert surface_of(scene, moment) == pytest.approx(hill(places, 1e-6 * np.sin(k)), abs=2e-8)
         assert moment.under == pytest.approx(hill(moment.part[None, :2], 1e-6 * np.sin(k))[0], abs=2e-8)
+
+
+def test_what_happens_in_a_few_of_many_steps_is_shown():
+    """Of two actuators one moves all the time, the other in three steps."""
+    points, step = grid()[0], np.arange(2000)
+    pulse = np.isin(step, (1001, 1002, 1003))
+    heights = np.outer(np.sin(step) ** 2, hill(points, 1e-5)) + np.outer(pulse, hill(points, 1e-5, (3e-4, 3e-4)))
+    scene = scene_of(made_run(np.zeros((2000, 2)), heights))
+    (moment,) = scene.moments(scene.run.time[[1002]])
+    assert surface_of(scene, moment).max() == pytest.approx(heights[1002].max(), rel=0.01)
+    assert scene.range[1] == pytest.approx(heights.max(), rel=0.01)
 
 
 def test_drawn_heights_are_nearer_to_a_hill_than_the_stored_triangles_are():
