@@ -17,7 +17,6 @@ from threadpoolctl import threadpool_limits
 
 import particle
 from coupling.case import Case, PlatformCase, RunCase
-from coupling.drives import build_drives as build_drives
 from coupling.environment import versions
 from coupling.files import check_folder
 from coupling.margins import PathLoads

@@ -115,7 +115,7 @@ def reproduce(
         written += [Path(output) / FOLDER / TABLE, Path(output) / PAGE]
         for file, text in zip(written[-2:], (table_of(results), page_of(results, effort)), strict=True):
             with whole_file(file) as partial:
-                partial.write_text(text)
+                partial.write_text(text, encoding="utf-8")
     return Reproduction(tuple(results), tuple(written), seconds)
 
 
@@ -157,7 +157,7 @@ def page_of(results: Sequence[FigureResult], effort: Effort) -> str:
     for verdict in verdicts:
         said = [SAID[verdict.answers[model].verdict] if _judged(verdict, model) else "-" for model in MODELS]
         rows.append([verdict.figure, verdict.statement, *said, _found(verdict)])
-    page = Template(files("active_surface.paper").joinpath("page.md").read_text()).substitute(
+    page = Template(files("active_surface.paper").joinpath("page.md").read_text("utf-8")).substitute(
         full=" --full" if effort.name == "full" else "",
         counted=counted(verdicts),
         starts=effort.starts,

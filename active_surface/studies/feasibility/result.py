@@ -33,7 +33,7 @@ class Feasibility:
     case: Case
     own: State  # of the case's own run
     chart: Chart  # of runs from the case's start, as long as the case's
-    valid: FloatArray  # (columns of the chart,) factors of the strokes up to which the model is valid; inf: all are
+    valid: FloatArray  # (columns of the chart,) factors of the strokes up to which the model is valid
     nearest: Nearest | None  # where a part that no point of the chart moves comes nearest to that
     areas: Feasible | None  # None: not asked for
     frequency: float  # Hz, of the fastest drive in the case
@@ -114,9 +114,7 @@ class Feasibility:
             "slips_from": _finite(self.stroke * limits.slips[0]),
             "lost_from": _finite(self.stroke * limits.lost[0]),
             "all_lost_from": _finite(self.stroke * limits.lost[1]),
-            "valid_to": _finite(
-                self.stroke * float(np.interp(0.0, np.log([k.frequency for k in columns]), self.valid))
-            ),
+            "valid_to": self.stroke * float(np.interp(0.0, np.log([k.frequency for k in columns]), self.valid)),
         }
 
     def _map(self) -> dict[str, Any]:

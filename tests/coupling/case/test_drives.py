@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from case_files import DRIVE, ONE, SEGMENTS, TABLE, python_case, read
 
+from coupling import build_drives
 from coupling.case import ActuatorCase, Case, InputError, SegmentCase, amplitude
-from coupling.run import build_drives
 from particle import Drive, Segment, SegmentDrive, TableDrive
 
 SCHEDULE = SegmentDrive(

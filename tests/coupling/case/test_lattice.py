@@ -7,8 +7,8 @@ import pytest
 from case_files import DRIVE, FRAME, PLACES, python_case
 from case_files import read as read_text
 
+from coupling import build_drives
 from coupling.case import ActuatorCase, Case, CaseError, InputError, LatticeCase, read_case, write_case
-from coupling.run import build_drives
 from particle import Drive
 from particle.drives import drive_table
 
