@@ -6,6 +6,7 @@ from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhes
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.face import FaceLaw as FaceLaw
 from .friction.table import FrictionTable as FrictionTable
+from .body.body import Body as Body
 from .footprint import Footprint as Footprint
 from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind, Outcome as Outcome, State as State

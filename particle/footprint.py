@@ -99,6 +99,28 @@ class Footprint:
         twice = (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])[:, None, None]
         return places.reshape(-1, 2), (np.outer(part * share, part) * twice / self.area).ravel()
 
+    def averaging(self, points: int) -> tuple[FloatArray, FloatArray]:
+        """Places (n, 2) [m] within a convex face, and weights (n,), exact for polynomials of degree 2 points - 1.
+
+        Few places, as the surface is looked at in each: Gauss's rule on a parallelogram; elsewhere those places of
+        `rule` that interpolate best (Fekete's, by a QR decomposition with pivots).
+        """
+        a, b = self.corners[1:3] - self.corners[:2] if len(self.corners) == 4 else np.zeros((2, 2))
+        if len(self.corners) == 4 and np.abs(self.corners[0] + self.corners[2]).max() <= FLAT * self.reach:
+            nodes, weights = np.polynomial.legendre.leggauss(points)
+            s, t = (axis.ravel()[:, None] / 2 for axis in np.meshgrid(nodes, nodes, indexing="ij"))
+            return s * a + t * b, np.outer(weights, weights).ravel() / 4
+        from scipy.linalg import qr  # here, because points do without it
+
+        degree = 2 * points - 1
+        places, weights = self.rule(points + 4)
+        x, y = places.T / self.reach
+        powers = np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)])
+        # An orthonormal basis under the rule, so that pivots and weights are well conditioned.
+        basis = np.linalg.solve(np.linalg.cholesky((powers * weights) @ powers.T), powers)
+        chosen = np.sort(qr(basis, mode="economic", pivoting=True)[2][: len(powers)])
+        return places[chosen], np.linalg.solve(basis[:, chosen], basis @ weights)
+
 
 def _moments(corners: FloatArray) -> tuple[float, FloatArray, FloatArray]:
     """Signed area, centroid (2,) and central second moments over the area (2, 2) of a polygon."""

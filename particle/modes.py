@@ -21,9 +21,10 @@ class Verdict(enum.IntEnum):
     DETACHED = 1
     LEFT_PLATE = 2
     OVERLOADED = 3
-    WORK_LIMIT = 4
-    LACKS_CELL = 5
-    INTERRUPTED = 6
+    TIPPED = 4
+    WORK_LIMIT = 5
+    LACKS_CELL = 6
+    INTERRUPTED = 7
 
 
 class EventKind(enum.IntEnum):
@@ -35,7 +36,8 @@ class EventKind(enum.IntEnum):
     DETACHES = 3  # comes off
     LEAVES_PLATE = 4  # goes over the rim
     OVERLOADS = 5  # is pressed on more than the friction law covers
-    LANDS = 6  # touches the surface again after a flight
+    TIPS = 6  # lifts an edge of its face
+    LANDS = 7  # touches the surface again after a flight
 
 
 NO_EVENT = -1
@@ -58,6 +60,7 @@ class Outcome(enum.StrEnum):
     DETACHED = "detached"
     LEFT_PLATE = "left the plate"
     OVERLOADED = "overloaded"
+    TIPPED = "tipped"
     WORK_LIMIT = "work limit"
 
     @property
@@ -72,5 +75,6 @@ _SENTENCES = {
     Outcome.DETACHED: "The surface pulled away faster than adhesion could follow: the part came off.",
     Outcome.LEFT_PLATE: "The part went over the rim of the plate.",
     Outcome.OVERLOADED: "The load on the part is more than the contact model covers.",
+    Outcome.TIPPED: "An edge of the part lifted: it tips over, or rocks.",
     Outcome.WORK_LIMIT: "The integrator stopped at its limit of work before the end of the run.",
 }

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.body import Face, march_body, new_body_memory
 from particle.drives import horizon
 from particle.events import (
     Memory,
@@ -50,6 +51,7 @@ _OUTCOMES = {
     Verdict.DETACHED: Outcome.DETACHED,
     Verdict.LEFT_PLATE: Outcome.LEFT_PLATE,
     Verdict.OVERLOADED: Outcome.OVERLOADED,
+    Verdict.TIPPED: Outcome.TIPPED,
     Verdict.WORK_LIMIT: Outcome.WORK_LIMIT,
 }
 
@@ -95,13 +97,19 @@ def _memory(surface: Surface, pairs: Pairs, stop: IntArray) -> Memory:
 
 
 def find_path(
-    surface: SurfaceMotion, request: Request, tolerance: float, stop: IntArray | None = None
+    surface: SurfaceMotion,
+    request: Request,
+    tolerance: float,
+    stop: IntArray | None = None,
+    face: Face | None = None,
 ) -> Trajectory | None:
     """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1.
 
-    tolerance: relative to the surface's size.
+    tolerance: relative to the surface's size.  face: of a part that has one.
     """
     pairs, stop = pairs_for(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
+    if face is not None:
+        return _face_path(surface, request, face, stop)
 
     def path(record: Surface) -> Computed:
         memory = _memory(record, pairs, stop)
@@ -118,6 +126,34 @@ def find_path(
         future = partial(_stays, surface, request, pairs, x, y)
         trajectory = replace(trajectory, future=future)
     return trajectory
+
+
+def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntArray) -> Trajectory | None:
+    """As `find_path`, of a part with a face."""
+
+    def path(record: Surface, asked: Request = request) -> Computed:
+        memory = new_body_memory(record, face, stop)
+        with _seen(memory.now, asked.until):
+            return _computed(march_body(record, asked, face, memory, new_record()), memory)
+
+    computed = _with_cells(surface, path)
+    if computed.verdict == Verdict.INTERRUPTED:
+        return None
+    rows = computed.rows
+
+    def sampler(times: FloatArray) -> Rows:
+        """The rows at ascending times [s]: pieces of the path, each from the row before."""
+        places = np.searchsorted(rows["time"], times, side="right") - 1
+        out = rows[places].copy()
+        for k in np.flatnonzero((times > out["time"]) & (places + 1 < len(rows))):
+            row = out[k]
+            start = [row[name] for name in ("x", "y", "heading", "v_x", "v_y", "spin", "work", "dissipated")]
+            begin, until = float(row["time"]), float(times[k])
+            piece = request._replace(start=np.array(start), mode=int(row["mode"]), begin=begin, until=until)
+            out[k] = path(surface.record, piece).rows[-1]
+        return out
+
+    return _trajectory(surface, request, computed, sampler, face)
 
 
 def find_path_by_steps(
@@ -214,7 +250,11 @@ def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> 
 
 
 def _trajectory(
-    surface: SurfaceMotion, request: Request, computed: Computed, sampler: Callable[[FloatArray], Rows]
+    surface: SurfaceMotion,
+    request: Request,
+    computed: Computed,
+    sampler: Callable[[FloatArray], Rows],
+    face: Face | None = None,
 ) -> Trajectory:
     rows = computed.rows
     samples = samples_of(rows)
@@ -225,8 +265,8 @@ def _trajectory(
     return Trajectory(
         *samples,
         events=[
-            Event(EventKind(kind), time, (x, y), speed, load)
-            for kind, time, x, y, speed, load in computed.events.tolist()
+            Event(EventKind(kind), time, (x, y), speed, load, heading if face else None)
+            for kind, time, x, y, speed, load, heading in computed.events.tolist()
         ],
         outcome=outcome,
         evaluations=computed.evaluations,
@@ -235,4 +275,7 @@ def _trajectory(
         ),
         sampler=sampler,
         contact=partial(_contact_states, surface, request),
+        heading=rows["heading"] if face else None,
+        spin=rows["spin"] if face else None,
+        pressure_margin=rows["pressure"] if face else None,
     )

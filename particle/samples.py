@@ -42,6 +42,7 @@ class Event:
     position: tuple[float, float]  # m
     speed: float  # m/s, in the plane; at a landing that after it
     load: float  # N, net normal force
+    heading: float | None = None  # rad, of a part with a face
 
 
 class Samples(NamedTuple):

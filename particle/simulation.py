@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from particle.body import Body
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
@@ -18,6 +19,7 @@ from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
+from particle.types import FloatArray
 
 BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where breakpoints are bridged
 
@@ -55,7 +57,7 @@ class Micropart:
 
 def simulate(
     surface: SurfaceMotion,
-    part: Micropart,
+    part: Micropart | Body,
     friction: Contact,
     duration: float,
     gravity: float | Sequence[float] = 9.80665,
@@ -63,6 +65,7 @@ def simulate(
     scheme: str = "events",
     after_detachment: str = "stop",
     time_step: float | None = None,
+    after_tipping: str = "stop",
 ) -> Trajectory:
     """Follow one part over the moving surface, by the equations of motion (3.1) to (3.4) in docs/motion.md.
 
@@ -114,19 +117,43 @@ def simulate(
             "Input scheme of simulate must be 'events' or 'fixed' where the mid-plane moves in its plane; got 'paper'"
         )
     wrong += faults(surface, duration, gravity, tolerance, after_detachment)
+    if after_tipping not in ("stop", "ignore"):
+        wrong.append(f"Input after_tipping of simulate must be 'stop' or 'ignore'; got {after_tipping!r}")
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
-        wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
+        wrong.append(f"Input position of {type(part).__name__} must lie on the plate; got {tuple(part.position)!r} m")
+    if isinstance(part, Body):
+        wrong += _face_faults(surface, scheme, after_detachment)
+    elif surface.turns:
+        wrong.append("Input part of simulate must be a Body on a base that turns; got a Micropart")
     if wrong:
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
     if scheme == "events":
-        found = find_path(surface, request, tolerance, stop_flag())
+        face = part.face(_points(tolerance), after_tipping == "stop") if isinstance(part, Body) else None
+        found = find_path(surface, request, tolerance, stop_flag(), face)
         if found is None:
             raise Stopped
         return found
     step = float(default_step(surface, duration) if time_step is None else time_step)
     steps = step_count(request.duration, step)
     return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MAX_ROWS))
+
+
+def _points(tolerance: float) -> int:
+    """Points a side at which the surface under a face is looked at."""
+    return 3 if tolerance > 1e-8 else (4 if tolerance > 1e-10 else 5)
+
+
+def _face_faults(surface: SurfaceMotion, scheme: str, after_detachment: str) -> list[str]:
+    """What a part with a face does not go with."""
+    wrong = []
+    if scheme != "events":
+        wrong.append(f"Input scheme of simulate must be 'events' with a Body; got {scheme!r}")
+    if after_detachment == "fly":
+        wrong.append("Input after_detachment of simulate must be 'stop' with a Body; got 'fly'")
+    if (surface.drives.jump[:, 0] > 0).any():
+        wrong.append("Input surface of simulate must move without jumps of its velocity under a Body")
+    return wrong
 
 
 def faults(
@@ -155,7 +182,7 @@ def faults(
 
 def new_request(
     surface: SurfaceMotion,
-    part: Micropart,
+    part: Micropart | Body,
     friction: Contact,
     duration: float,
     gravity: float | Sequence[float],
@@ -169,8 +196,8 @@ def new_request(
     jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
     return Request(
         part=part_record(surface, part, friction, gravity),
-        start=np.array([*part.position, *part.velocity, *np.zeros(4)], dtype=float),
-        mode=int(Mode.SLIDING if np.any(part.velocity) else Mode.RESTING),
+        start=_start(part),
+        mode=int(Mode.SLIDING if np.any(part.velocity) or _start(part)[5] else Mode.RESTING),
         begin=0.0,
         until=float(duration),
         first_step=FIRST_STEP * stroke_time,
@@ -187,12 +214,19 @@ def new_request(
     )
 
 
-def part_record(surface: SurfaceMotion, part: Micropart, friction: Contact, gravity: float | Sequence[float]) -> Part:
+def _start(part: Micropart | Body) -> FloatArray:
+    """The numbers (8,) of a `Motion`, or of the state of a part with a face."""
+    if isinstance(part, Body):
+        return np.array([*part.position, part.heading, *part.velocity, part.spin, 0.0, 0.0], dtype=float)
+    return np.array([*part.position, *part.velocity, *np.zeros(4)], dtype=float)
+
+
+def part_record(surface: SurfaceMotion, part: Micropart | Body, friction: Contact, gravity: float | Sequence[float]) -> Part:
     """The part's record for the kernels: forces, friction law, and heights of contact and centre over the mid-plane."""
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     contact = centre = 0.0
-    if surface.tilts:  # on a surface that stays level all heights move alike
+    if surface.tilts or isinstance(part, Body):  # on a surface that stays level all heights move alike
         contact, centre = surface.half_thickness, surface.half_thickness + part.centre_height
     forces = float(part.mass), -float(z), float(x), float(y), float(part.squeeze)
     return Part(*forces, friction.law, float(contact), float(centre))

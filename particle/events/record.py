@@ -33,6 +33,9 @@ class Row(Record):
     potential: float
     work: float  # J, done by the surface since the start
     dissipated: float  # J, by friction and impacts since the start
+    heading: float  # rad, of a part with a face; else these three are 0
+    spin: float  # rad/s
+    pressure: float  # the least on the face over the mean
 
 
 class EventRow(Record):
@@ -44,6 +47,7 @@ class EventRow(Record):
     y: float
     speed: float  # m/s
     load: float  # N
+    heading: float  # rad
 
 
 class Lengths(Record):
@@ -117,7 +121,7 @@ def note(record: PathRecord, kind: int, row: Row) -> PathRecord:
         events = longer
     event = events[place]
     event.kind, event.time, event.x, event.y = kind, row.time, row.x, row.y
-    event.speed, event.load = math.hypot(row.v_x, row.v_y), row.load
+    event.speed, event.load, event.heading = math.hypot(row.v_x, row.v_y), row.load, row.heading
     lengths.events = place + 1
     return PathRecord(record.rows, events, record.lengths)
 

@@ -79,6 +79,32 @@ def friction_limit(law: FrictionLaw, load: float) -> float:
     return math.exp(((c[0, knot] * s + c[1, knot]) * s + c[2, knot]) * s + c[3, knot])
 
 
+@device_no_arrays
+def friction_slope(law: FrictionLaw, load: float) -> float:
+    """dQ/dN while sliding under the net normal force `load` [N]."""
+    if law.kind == CONSTANT or friction_limit(law, load) <= 0.0:
+        return 0.0
+    if law.kind == COULOMB:
+        return law.coefficient
+    c = law.pieces
+    if law.kind == POINTS:
+        piece = int(np.searchsorted(law.loads, load, side="right"))
+        s = load - law.loads[max(piece - 1, 0)]
+        slope = 0.0
+        last = c.shape[0] - 1
+        for power in range(last):
+            slope = slope * s + (last - power) * c[power, piece]
+        return slope
+    # Q is a function of the root of the load above pull-off: where that is 0 its slope has no bound.
+    above = max(1e-12, (load + law.pull_off) / law.pull_off)
+    root = math.sqrt(above)
+    place = math.log1p(root) / law.step
+    knot = int(min(place, c.shape[1] - 1.0))
+    s = (place - knot) * law.step
+    slope = (3 * c[0, knot] * s + 2 * c[1, knot]) * s + c[2, knot]
+    return friction_limit(law, load) * slope / (2 * root * (1 + root) * law.pull_off)
+
+
 @jit
 def _limits(law: FrictionLaw, loads: FloatArray) -> FloatArray:
     out = np.empty(len(loads))

@@ -72,16 +72,22 @@ POINT_SIZE = len(SurfacePoint._fields)
 
 
 @device_no_arrays
-def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
-    """The surface at a point [m] of the prepared cell and a time [s] of the prepared span.
+def set_time(local: LocalSurface, time: float) -> None:
+    """Prepare `height_here` for a time [s] of the prepared span."""
+    frame: Frame = local.frame[0]
+    count = frame.monomials + frame.logarithms
+    at_time(local.smooth, local.at, 0, count, (time - frame.time) / frame.unit, frame.unit)
+
+
+@device_no_arrays
+def height_here(local: LocalSurface, x: float, y: float) -> Jet:
+    """w and its derivatives at a point [m] of the prepared cell and the time of `set_time`.
 
     w = sum c_ij u^i v^j + sum f_k |X - X_k|^2 ln |X - X_k|, lengths in the logarithms over the surface's size.
     """
     frame: Frame = local.frame[0]
     size = frame.surface_size
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
-    s, unit = (time - frame.time) / frame.unit, frame.unit
-    at_time(local.smooth, local.at, 0, frame.monomials + frame.logarithms, s, unit)
     f = jet(local.at, frame.monomials, frame.degree, u, v, frame.half_x, frame.half_y)
     w, w_t, w_tt, g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.f, f.t, f.tt, f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
     h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
@@ -118,6 +124,22 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
         h_xy += bend * 2 * d_x * d_y / bounded
         h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
+    return Jet(
+        *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
+        *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy),
+    )
+
+
+@device_no_arrays
+def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
+    """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
+    frame: Frame = local.frame[0]
+    set_time(local, time)
+    f = height_here(local, x, y)
+    g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
+    h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
+    t_xxx, t_xxy, t_xyy, t_yyy = f.xxx, f.xxy, f.xyy, f.yyy
+    s, unit = (time - frame.time) / frame.unit, frame.unit
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
     if frame.base_drives > 0:
         base_px, base_vx, base_ax = evaluate_piece(local.base[:, 0], s, unit)
@@ -142,7 +164,7 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         t_xxx, t_xxy = t_xxx - g_x * along_x.xxx - g_y * along_y.xxx, t_xxy - g_x * along_x.xxy - g_y * along_y.xxy
         t_xyy, t_yyy = t_xyy - g_x * along_x.xyy - g_y * along_y.xyy, t_yyy - g_x * along_x.yyy - g_y * along_y.yyy
     return SurfacePoint(
-        *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
+        *(f.f, f.t, f.tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
         *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy, base_px, base_py, base_vx, base_vy, base_ax, base_ay),
         *(x_x, x_y, y_x, y_y, x_xt, x_yt, y_xt, y_yt, x_xx, x_xy, x_yy, y_xx, y_xy, y_yy),
     )

@@ -15,7 +15,7 @@ from particle.drives import ORDER
 from particle.jit import device_no_arrays, jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells, Grid
-from particle.surface.record import Surface
+from particle.surface.record import BASE, Surface
 from particle.surface.rim import rim_gap
 from particle.types import FloatArray
 
@@ -72,7 +72,7 @@ class LocalSurface(NamedTuple):
     smooth: FloatArray  # (6, M + J) m, the cell's polynomial; then the strengths of its logarithms
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
     sources: FloatArray  # (J, 2) m, where the logarithms are
-    base: FloatArray  # (6, 2) m, where the base is
+    base: FloatArray  # (6, 3) m and rad, where the base is along x and y, and how far it is turned
     plane: FloatArray  # (6, 2 M) m, the cell's motion in its plane: polynomials along x, then along y
     plane_at: FloatArray  # (3, 2 M) m, as `at`
     ahead: FloatArray  # (6,) m, a drive's quintic at the end of the span
@@ -81,7 +81,7 @@ class LocalSurface(NamedTuple):
 def new_local(surface: Surface) -> LocalSurface:
     """Scratch memory that fits the surface, with no cell and no time yet."""
     grid: Grid = surface.cells.grid[0]
-    width, drives = monomial_count(grid.highest) + grid.most_near, grid.most_drives + surface.in_plane_count + 2
+    width, drives = monomial_count(grid.highest) + grid.most_near, grid.most_drives + surface.in_plane_count + BASE
     plane = 2 * monomial_count(grid.plane_highest)
     local = LocalSurface(
         frame=new_records(Frame),
@@ -90,7 +90,7 @@ def new_local(surface: Surface) -> LocalSurface:
         smooth=np.zeros((ORDER, width)),
         at=np.zeros((3, width)),
         sources=np.zeros((grid.most_near, 2)),
-        base=np.zeros((ORDER, 2)),
+        base=np.zeros((ORDER, BASE)),
         plane=np.zeros((ORDER, plane)),
         plane_at=np.zeros((3, plane)),
         ahead=np.zeros(ORDER),
@@ -104,7 +104,7 @@ def prepare(surface: Surface, local: LocalSurface) -> None:
     local.frame[0] = 0
     frame: Frame = local.frame[0]
     frame.surface_size, frame.floor, frame.overhang = surface.size, surface.floor / surface.size, surface.overhang
-    frame.base_drives, frame.in_plane, frame.cell = 2 * surface.moving_base, surface.in_plane_count, NOWHERE
+    frame.base_drives, frame.in_plane, frame.cell = BASE * surface.moving_base, surface.in_plane_count, NOWHERE
 
 
 def missing_place(local: LocalSurface) -> FloatArray:

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from particle.drives import DriveTable
 from particle.surface.cells import Cells
+
+BASE = 3  # drives of a base that moves: along x, along y, and its turn about the origin
 from particle.types import FloatArray
 
 
@@ -22,5 +24,5 @@ class Surface(NamedTuple):
     overhang: float  # a cell's polynomials hold out to this many half widths
     conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
     edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
-    moving_base: bool  # whether two more drives carry the base in its plane
+    moving_base: bool  # whether three more drives carry the base in its plane
     unit: float  # s, of time in the polynomials that are made of cells and drives

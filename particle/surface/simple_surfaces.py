@@ -31,8 +31,8 @@ def polynomial_surface(
         c, for a surface at rest or a moving one with K <= 6.
     size : float
         Length that the integrator's tolerance refers to, m.
-    base : pair of drives, optional
-        Motion of the base along x and y.
+    base : two or three drives, optional
+        Motion of the base along x and y [m], and its turn about the origin [rad].
     in_plane : array (2, I, J) or (2, I, J, K), optional
         Motion of the mid-plane in its plane, along x and y, as polynomials like w.
 
@@ -56,12 +56,13 @@ def polynomial_surface(
     u = u[..., None] if u.ndim == 3 else u
     if u.ndim != 4 or len(u) != 2 or u.shape[3] > ORDER:
         raise ValueError(f"Input in_plane must have shape (2, I, J) or (2, I, J, K) with K <= 6; got {u.shape}")
-    if base is not None and len(base) != 2:
-        raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
+    if base is not None and len(base) not in (2, 3):
+        wanted = "two drives, for x and y, or a third one for its turn"
+        raise ValueError(f"Input base of polynomial_surface must be {wanted}; got {len(base)}")
     shapes, degree = _rows(c, size)
     (along_x, plane_degree), (along_y, _) = (_rows(component, size) for component in u)
     return SurfaceMotion(
-        drives=reduce(_joined, [monomial_table(c.shape[2]), monomial_table(u.shape[3]), drive_table(base or [])]),
+        drives=reduce(_joined, [monomial_table(c.shape[2]), monomial_table(u.shape[3]), _base_table(base or [])]),
         store=OneCell(shapes, degree, size, np.stack([along_x, along_y], axis=1), plane_degree),
         sources=np.zeros((0, 2)),
         size=size,
@@ -82,7 +83,11 @@ def _rows(c: FloatArray, size: float) -> tuple[FloatArray, int]:
 
 
 def platform_surface(
-    x: AnyDrive | None = None, y: AnyDrive | None = None, z: AnyDrive | None = None, size: float = 1.0
+    x: AnyDrive | None = None,
+    y: AnyDrive | None = None,
+    z: AnyDrive | None = None,
+    size: float = 1.0,
+    turn: AnyDrive | None = None,
 ) -> SurfaceMotion:
     """A flat rigid surface without rim that drives move along x, y and z.
 
@@ -94,6 +99,8 @@ def platform_surface(
         Motion along each axis; None: no motion.
     size : float
         Length that the integrator's tolerance refers to, m; the platform's largest travel suits.
+    turn : drive, optional
+        Its turn about the origin, counter-clockwise, with heights in rad.
 
     Returns
     -------
@@ -108,8 +115,14 @@ def platform_surface(
     if not (math.isfinite(size) and size > 0):
         raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
     flat = polynomial_surface([[1.0]], size=size)
-    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y)]
+    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y, turn)]
     return replace(flat, drives=reduce(_joined, tables), moving_base=True)
+
+
+def _base_table(base: Sequence[AnyDrive]) -> DriveTable:
+    """The drives of a base; one that does not turn has a still drive for that, one at rest none."""
+    table = drive_table(base)
+    return _joined(table, _still_table()) if len(base) == 2 else table
 
 
 def _still_table() -> DriveTable:

@@ -66,7 +66,7 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     for k in range(ORDER):
         for m in range(frame.monomials + frame.logarithms):
             local.smooth[k, m] = 0.0
-        local.base[k, 0] = local.base[k, 1] = 0.0
+        local.base[k, 0] = local.base[k, 1] = local.base[k, 2] = 0.0
         if frame.in_plane > 0:
             for m in range(2 * frame.plane_monomials):
                 local.plane[k, m] = 0.0
@@ -92,7 +92,7 @@ def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> 
         return False
     shift = (time - frame.time) / frame.unit
     _shift(local.smooth, shift, frame.monomials + frame.logarithms)
-    _shift(local.base, shift, 2)
+    _shift(local.base, shift, 3)
     if frame.in_plane > 0:
         _shift(local.plane, shift, 2 * frame.plane_monomials)
     frame.time = time

@@ -1,0 +1,369 @@
+"""The equations of motion of a part with a face: a rigid body on the moving surface.
+
+The state is (X, Y, theta): the point of the mid-plane under the face's origin and the heading. With the averages y =
+(P_0, a_1, a_2) of `averages`, the body's axes (e_1, e_2, n) are the polar factor of (a_1, a_2): with U^2 = a_i.a_j,
+
+    (e_1, e_2) = (a_1, a_2) U^-1,     n = e_1 x e_2,     G = (e_1, e_2, n).(a_1', a_2'),
+    (-Omega_2, Omega_1) = G_n U^-1,     Omega_3 = (G_21 - G_12)/tr U        angular velocity, in body axes
+
+so that no slope is taken as small; the face is at P_0 + z_k n, the centre of mass at P_0 + z_c n. Newton's and Euler's
+equations give the contact's wrench about the face's origin in body axes, affine in u = (X'', Y'', theta''): planar
+(f_1, f_2, tau) = p_0 + p_u u and normal (N, M_1, M_2) = n_0 + n_u u. With the twist of the face for the rates
+(X', Y', theta') at a fixed time, planar K and normal B, pressure does no work in sliding, so
+
+    planar = W(K (X', Y', theta'); N, M) + P normal,     P = -K^-T B^T
+
+with the wrench W of friction. Tractions are Q(N)/A (1 + rho.S^-1 d), N d = (-M_2, M_1) N-weighted by Q'(N), so that W
+is linear in (N, M) but for Q(N), and u follows from 3 x 3 systems.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from particle.body.averages import AT, OO, OT, PLACE, ROWS, T, TT, XO, XT, XX, XY, YO, YT, YY, O, X, Y
+from particle.body.face import Face
+from particle.body.wrench import fill_wrenches
+from particle.events.mechanics import Part
+from particle.friction import friction_limit, friction_slope
+from particle.jit import device_no_arrays
+from particle.types import FloatArray
+
+MOST_PASSES, SETTLED = 30, 1e-14
+
+
+class Base(NamedTuple):
+    """The base's place along x and y and its turn, with two derivatives in time."""
+
+    x: float
+    y: float
+    turn: float
+    v_x: float
+    v_y: float
+    spin: float
+    a_x: float
+    a_y: float
+    spin_rate: float
+
+
+class Balance(NamedTuple):
+    """Scratch memory of the equations at one state."""
+
+    averages: FloatArray  # (15, 9)
+    axes: FloatArray  # (3, 3), rows e_1, e_2, n
+    unstretch: FloatArray  # (2, 2), U^-1
+    rate: FloatArray  # (9,), y'
+    second: FloatArray  # (9,), y'' at u = 0
+    twist: FloatArray  # (6,), velocity of P_0 and angular velocity in body axes
+    planar: FloatArray  # (3, 3), K
+    normal: FloatArray  # (3, 3), B
+    workless: FloatArray  # (3, 3), P
+    forces: FloatArray  # (6, 4), (f_1, f_2, tau, N, M_1, M_2): at u = 0, then by u
+    carried: FloatArray  # (6,), the face's twist at (X', Y', theta') = 0, like `forces`
+    wrenches: FloatArray  # (3, 3), of `wrench`
+    matrix: FloatArray  # (3, 4), a system of equations
+    rates: FloatArray  # (3,), u
+    slip: FloatArray  # (3,), the face's planar twist
+    load: FloatArray  # (3,), N + squeeze, M_1, M_2
+
+
+def new_balance() -> Balance:
+    return Balance(
+        *(np.zeros((ROWS, PLACE)), np.zeros((3, 3)), np.zeros((2, 2)), np.zeros(PLACE), np.zeros(PLACE), np.zeros(6)),
+        *(np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((6, 4)), np.zeros(6)),
+        *(np.zeros((3, 3)), np.zeros((3, 4)), np.zeros(3), np.zeros(3), np.zeros(3)),
+    )
+
+
+@device_no_arrays
+def solve(m: FloatArray, out: FloatArray) -> bool:
+    """Solve the system (n, n + 1) by elimination with pivots, in place; False where it is singular."""
+    n = len(m)
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(m[i, k]) > abs(m[pivot, k]):
+                pivot = i
+        if m[pivot, k] == 0.0 or not math.isfinite(m[pivot, k]):
+            return False
+        if pivot != k:
+            for j in range(k, n + 1):
+                m[k, j], m[pivot, j] = m[pivot, j], m[k, j]
+        for i in range(k + 1, n):
+            factor = m[i, k] / m[k, k]
+            if factor != 0.0:
+                for j in range(k + 1, n + 1):
+                    m[i, j] -= factor * m[k, j]
+    for k in range(n - 1, -1, -1):
+        total = m[k, n]
+        for j in range(k + 1, n):
+            total -= m[k, j] * out[j]
+        out[k] = total / m[k, k]
+    return True
+
+
+@device_no_arrays
+def fill_pose(part: Part, base: Base, b: Balance) -> bool:
+    """Axes, K, B, P and the carried twist from the averages; False where K is singular."""
+    y = b.averages[AT]
+    xx = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
+    xy = y[3] * y[6] + y[4] * y[7] + y[5] * y[8]
+    yy = y[6] * y[6] + y[7] * y[7] + y[8] * y[8]
+    root = math.sqrt(xx * yy - xy * xy)  # det U
+    trace = math.sqrt(xx + yy + 2 * root)  # tr U
+    u_xx, u_xy, u_yy = (xx + root) / trace, xy / trace, (yy + root) / trace
+    b.unstretch[0, 0], b.unstretch[1, 1] = u_yy / root, u_xx / root
+    b.unstretch[0, 1] = b.unstretch[1, 0] = -u_xy / root
+    for i in range(3):
+        b.axes[0, i] = y[3 + i] * b.unstretch[0, 0] + y[6 + i] * b.unstretch[1, 0]
+        b.axes[1, i] = y[3 + i] * b.unstretch[0, 1] + y[6 + i] * b.unstretch[1, 1]
+        j, k = (i + 1) % 3, (i + 2) % 3
+        b.axes[2, i] = (y[3 + j] * y[6 + k] - y[3 + k] * y[6 + j]) / root
+    for column, row in ((0, X), (1, Y), (2, O)):
+        _fill_twist(b, b.averages[row])
+        t = b.twist
+        b.planar[0, column], b.planar[1, column] = t[0] + part.contact * t[4], t[1] - part.contact * t[3]
+        b.planar[2, column] = t[5]
+        b.normal[0, column], b.normal[1, column], b.normal[2, column] = t[2], t[3], t[4]
+    for column in range(3):  # K^T P = -B^T
+        for i in range(3):
+            for j in range(3):
+                b.matrix[i, j] = b.planar[j, i]
+            b.matrix[i, 3] = -b.normal[column, i]
+        if not solve(b.matrix, b.rates):
+            return False
+        for i in range(3):
+            b.workless[i, column] = b.rates[i]
+    _fill_twist(b, b.averages[T])
+    t, c = b.twist, b.carried
+    x, y_ = y[0] + part.contact * b.axes[2, 0], y[1] + part.contact * b.axes[2, 1]
+    v_x, v_y = _turned_back(base, base.v_x, base.v_y)
+    v_x, v_y = v_x - base.spin * y_, v_y + base.spin * x
+    e = b.axes
+    c[0] = t[0] + part.contact * t[4] + e[0, 0] * v_x + e[0, 1] * v_y
+    c[1] = t[1] - part.contact * t[3] + e[1, 0] * v_x + e[1, 1] * v_y
+    c[2] = t[5] + base.spin * e[2, 2]
+    c[3] = t[2] + e[2, 0] * v_x + e[2, 1] * v_y
+    c[4], c[5] = t[3] + base.spin * e[0, 2], t[4] + base.spin * e[1, 2]
+    return True
+
+
+@device_no_arrays
+def _turned_back(base: Base, x: float, y: float) -> tuple[float, float]:
+    """A vector in the base's axes."""
+    cosine, sine = math.cos(base.turn), math.sin(base.turn)
+    return cosine * x + sine * y, cosine * y - sine * x
+
+
+@device_no_arrays
+def _trace(b: Balance) -> float:
+    """tr U."""
+    u = b.unstretch
+    return (u[0, 0] + u[1, 1]) / (u[0, 0] * u[1, 1] - u[0, 1] * u[1, 0])
+
+
+@device_no_arrays
+def _along(b: Balance, i: int, y: FloatArray, first: int) -> float:
+    """The part of a vector along the i-th axis of the body."""
+    return b.axes[i, 0] * y[first] + b.axes[i, 1] * y[first + 1] + b.axes[i, 2] * y[first + 2]
+
+
+@device_no_arrays
+def _fill_twist(b: Balance, rate: FloatArray) -> None:
+    """The velocity of P_0 and the angular velocity, in body axes, of y' = `rate` (9,) into b.twist."""
+    u, t = b.unstretch, b.twist
+    for i in range(3):
+        t[i] = _along(b, i, rate, 0)
+    n_1, n_2 = _along(b, 2, rate, 3), _along(b, 2, rate, 6)
+    t[3] = n_1 * u[0, 1] + n_2 * u[1, 1]
+    t[4] = -(n_1 * u[0, 0] + n_2 * u[1, 0])
+    t[5] = (_along(b, 1, rate, 3) - _along(b, 0, rate, 6)) / _trace(b)
+
+
+@device_no_arrays
+def fill_forces(part: Part, face: Face, base: Base, v_x: float, v_y: float, omega: float, b: Balance) -> None:
+    """The contact's wrench, its change with u, and the face's slip, at the rates (X', Y', theta')."""
+    a, mass, z, h = b.averages, part.mass, part.centre, part.centre - part.contact
+    for i in range(3):
+        b.slip[i] = b.planar[i, 0] * v_x + b.planar[i, 1] * v_y + b.planar[i, 2] * omega
+    for j in range(PLACE):
+        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[O, j] * omega
+        bend = a[XX, j] * v_x * v_x + 2 * a[XY, j] * v_x * v_y + a[YY, j] * v_y * v_y
+        bend += 2 * omega * (a[XO, j] * v_x + a[YO, j] * v_y) + a[OO, j] * omega * omega
+        b.second[j] = a[TT, j] + 2 * (a[XT, j] * v_x + a[YT, j] * v_y + a[OT, j] * omega) + bend
+    for column, row in ((1, X), (2, Y), (3, O)):
+        _fill_twist(b, a[row])
+        t = b.twist
+        _set_forces(part, face, t[0] + z * t[4], t[1] - z * t[3], t[2], t[3], t[4], t[5], h, b, column)
+    _fill_twist(b, b.rate)
+    e, u, t, trace = b.axes, b.unstretch, b.twist, _trace(b)
+    o_1, o_2, o_3 = t[3], t[4], t[5]
+    # G, and its rate (e_1, e_2, n).(a_1'', a_2'') - Omega x G.
+    g_11, g_12 = _along(b, 0, b.rate, 3), _along(b, 0, b.rate, 6)
+    g_21, g_22 = _along(b, 1, b.rate, 3), _along(b, 1, b.rate, 6)
+    g_31, g_32 = _along(b, 2, b.rate, 3), _along(b, 2, b.rate, 6)
+    d_21 = _along(b, 1, b.second, 3) - (o_3 * g_11 - o_1 * g_31)
+    d_12 = _along(b, 0, b.second, 6) - (o_2 * g_32 - o_3 * g_22)
+    d_31 = _along(b, 2, b.second, 3) - (o_1 * g_21 - o_2 * g_11)
+    d_32 = _along(b, 2, b.second, 6) - (o_1 * g_22 - o_2 * g_12)
+    # U' = G - Omega_3 J U, J the turn by a right angle.
+    det = u[0, 0] * u[1, 1] - u[0, 1] * u[1, 0]
+    u_11, u_12, u_22 = u[1, 1] / det, -u[0, 1] / det, u[0, 0] / det
+    s_11, s_12, s_21, s_22 = g_11 + o_3 * u_12, g_12 + o_3 * u_22, g_21 - o_3 * u_11, g_22 - o_3 * u_12
+    n_1 = d_31 + o_2 * s_11 - o_1 * s_21
+    n_2 = d_32 + o_2 * s_12 - o_1 * s_22
+    r_1, r_2 = n_1 * u[0, 1] + n_2 * u[1, 1], -(n_1 * u[0, 0] + n_2 * u[1, 0])
+    r_3 = (d_21 - d_12 - o_3 * (s_11 + s_22)) / trace
+    a_1 = _along(b, 0, b.second, 0) + z * (r_2 + o_1 * o_3)
+    a_2 = _along(b, 1, b.second, 0) + z * (-r_1 + o_2 * o_3)
+    a_3 = _along(b, 2, b.second, 0) - z * (o_1 * o_1 + o_2 * o_2)
+    # What the base adds: b'', and its turn, at c = P_0 + z n with the velocity c' in its axes; less gravity.
+    f_x, f_y = _turned_back(base, base.a_x - part.tilt_x, base.a_y - part.tilt_y)
+    if base.spin != 0.0 or base.spin_rate != 0.0:
+        c_x, c_y = a[AT, 0] + z * e[2, 0], a[AT, 1] + z * e[2, 1]
+        v_1, v_2, v_3 = t[0] + z * o_2, t[1] - z * o_1, t[2]
+        w_x = e[0, 0] * v_1 + e[1, 0] * v_2 + e[2, 0] * v_3
+        w_y = e[0, 1] * v_1 + e[1, 1] * v_2 + e[2, 1] * v_3
+        f_x += -2 * base.spin * w_y - base.spin_rate * c_y - base.spin * base.spin * c_x
+        f_y += 2 * base.spin * w_x + base.spin_rate * c_x - base.spin * base.spin * c_y
+        r_1 += base.spin_rate * e[0, 2] + base.spin * (e[1, 2] * o_3 - e[2, 2] * o_2)
+        r_2 += base.spin_rate * e[1, 2] + base.spin * (e[2, 2] * o_1 - e[0, 2] * o_3)
+        r_3 += base.spin_rate * e[2, 2] + base.spin * (e[0, 2] * o_2 - e[1, 2] * o_1)
+        o_1, o_2, o_3 = o_1 + base.spin * e[0, 2], o_2 + base.spin * e[1, 2], o_3 + base.spin * e[2, 2]
+    a_1 += e[0, 0] * f_x + e[0, 1] * f_y + e[0, 2] * part.gravity
+    a_2 += e[1, 0] * f_x + e[1, 1] * f_y + e[1, 2] * part.gravity
+    a_3 += e[2, 0] * f_x + e[2, 1] * f_y + e[2, 2] * part.gravity
+    _set_forces(part, face, a_1, a_2, a_3, r_1, r_2, r_3, h, b, 0)
+    # Omega x I Omega.
+    i = face.inertia
+    l_1 = i[0, 0] * o_1 + i[0, 1] * o_2 + i[0, 2] * o_3
+    l_2 = i[1, 0] * o_1 + i[1, 1] * o_2 + i[1, 2] * o_3
+    l_3 = i[2, 0] * o_1 + i[2, 1] * o_2 + i[2, 2] * o_3
+    b.forces[4, 0] += o_2 * l_3 - o_3 * l_2
+    b.forces[5, 0] += o_3 * l_1 - o_1 * l_3
+    b.forces[2, 0] += o_1 * l_2 - o_2 * l_1
+
+
+@device_no_arrays
+def _set_forces(
+    part: Part, face: Face, a_1: float, a_2: float, a_3: float, r_1: float, r_2: float, r_3: float, h: float,
+    b: Balance, column: int,
+) -> None:
+    """m a and I r about the face's origin, h below the centre of mass, into a column of b.forces."""
+    i, mass, f = face.inertia, part.mass, b.forces
+    f[0, column], f[1, column], f[3, column] = mass * a_1, mass * a_2, mass * a_3
+    f[4, column] = i[0, 0] * r_1 + i[0, 1] * r_2 + i[0, 2] * r_3 - h * mass * a_2
+    f[5, column] = i[1, 0] * r_1 + i[1, 1] * r_2 + i[1, 2] * r_3 + h * mass * a_1
+    f[2, column] = i[2, 0] * r_1 + i[2, 1] * r_2 + i[2, 2] * r_3
+
+
+@device_no_arrays
+def set_load(part: Part, u_1: float, u_2: float, u_3: float, b: Balance) -> None:
+    """The normal wrench at u into b.load."""
+    for i in range(3):
+        row = b.forces[3 + i]
+        b.load[i] = row[0] + row[1] * u_1 + row[2] * u_2 + row[3] * u_3
+    b.load[0] += part.squeeze
+
+
+@device_no_arrays
+def least_pressure(face: Face, b: Balance) -> float:
+    """The least pressure on the face times its area [N], under the load b.load."""
+    load, m_1, m_2 = b.load[0], b.load[1], b.load[2]
+    if not face.linear:
+        return load
+    s = face.unmoments
+    x, y = -s[0, 0] * m_2 + s[0, 1] * m_1, -s[1, 0] * m_2 + s[1, 1] * m_1
+    if face.radius > 0.0:
+        return load - face.radius * math.hypot(x, y)
+    least = math.inf
+    for k in range(len(face.hull)):
+        least = min(least, load + x * face.hull[k, 0] + y * face.hull[k, 1])
+    return least
+
+
+@device_no_arrays
+def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Balance) -> bool:
+    """u under friction against the slip s into b.rates, with its load b.load; False where there is none."""
+    fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
+    load = b.load[0]
+    for _ in range(MOST_PASSES):
+        _fill_system(part, face, load, b)
+        if not solve(b.matrix, b.rates):
+            return False
+        set_load(part, b.rates[0], b.rates[1], b.rates[2], b)
+        off = abs(b.load[0] - load)
+        load = b.load[0]
+        if off <= SETTLED * (abs(load) + part.mass * abs(part.gravity)) or part.law.kind < 2:
+            return True
+    return True
+
+
+@device_no_arrays
+def _fill_system(part: Part, face: Face, load: float, b: Balance) -> None:
+    """[p_u - (F + P) n_u] u = F_0 + (F + P) n_0 - p_0, with Q(N) linear around a load [N], into b.matrix."""
+    limit, slope = friction_limit(part.law, load) / face.area, friction_slope(part.law, load) / face.area
+    w, s, f = b.wrenches, face.unmoments, b.forces
+    for i in range(3):
+        by_load, by_m_1, by_m_2 = slope * w[i, 0], 0.0, 0.0
+        if face.linear:
+            by_m_1 = slope * (w[i, 1] * s[0, 1] + w[i, 2] * s[1, 1])
+            by_m_2 = -slope * (w[i, 1] * s[0, 0] + w[i, 2] * s[1, 0])
+        right = w[i, 0] * (limit - slope * (load - part.squeeze))
+        by_load, by_m_1 = by_load + b.workless[i, 0], by_m_1 + b.workless[i, 1]
+        by_m_2 += b.workless[i, 2]
+        for j in range(4):
+            normal = by_load * f[3, j] + by_m_1 * f[4, j] + by_m_2 * f[5, j]
+            if j == 0:
+                b.matrix[i, 3] = right + normal - f[i, 0]
+            else:
+                b.matrix[i, j - 1] = f[i, j] - normal
+
+
+@device_no_arrays
+def friction_wrench(part: Part, b: Balance) -> tuple[float, float, float]:
+    """Friction's wrench (f_1, f_2, tau) under b.rates and b.load: the planar one less the pressure's share."""
+    f, p, n, u = b.forces, b.workless, b.load, b.rates
+    load = n[0] - part.squeeze
+    return (
+        f[0, 0] + f[0, 1] * u[0] + f[0, 2] * u[1] + f[0, 3] * u[2] - p[0, 0] * load - p[0, 1] * n[1] - p[0, 2] * n[2],
+        f[1, 0] + f[1, 1] * u[0] + f[1, 2] * u[1] + f[1, 3] * u[2] - p[1, 0] * load - p[1, 1] * n[1] - p[1, 2] * n[2],
+        f[2, 0] + f[2, 1] * u[0] + f[2, 2] * u[1] + f[2, 3] * u[2] - p[2, 0] * load - p[2, 1] * n[1] - p[2, 2] * n[2],
+    )
+
+
+@device_no_arrays
+def powers(part: Part, b: Balance) -> tuple[float, float]:
+    """The surface's power on the part, and what friction dissipates [W], under b.rates and b.load."""
+    f, u, c, n = b.forces, b.rates, b.carried, b.load
+    work = (n[0] - part.squeeze) * c[3] + n[1] * c[4] + n[2] * c[5]
+    for i in range(3):
+        work += (f[i, 0] + f[i, 1] * u[0] + f[i, 2] * u[1] + f[i, 3] * u[2]) * c[i]
+    w_1, w_2, w_3 = friction_wrench(part, b)
+    return work, -(w_1 * b.slip[0] + w_2 * b.slip[1] + w_3 * b.slip[2])
+
+
+@device_no_arrays
+def energy_of(part: Part, face: Face, base: Base, v_x: float, v_y: float, omega: float, b: Balance) -> tuple[float, float]:
+    """Kinetic and potential energy [J] at the rates (X', Y', theta'), from b.averages and b.axes."""
+    a, e, z, i = b.averages, b.axes, part.centre, face.inertia
+    for j in range(PLACE):
+        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[O, j] * omega
+    _fill_twist(b, b.rate)
+    t = b.twist
+    c_x, c_y, c_z = a[AT, 0] + z * e[2, 0], a[AT, 1] + z * e[2, 1], a[AT, 2] + z * e[2, 2]
+    b_x, b_y = _turned_back(base, base.v_x, base.v_y)
+    b_x, b_y = b_x - base.spin * c_y, b_y + base.spin * c_x
+    v_1 = t[0] + z * t[4] + e[0, 0] * b_x + e[0, 1] * b_y
+    v_2 = t[1] - z * t[3] + e[1, 0] * b_x + e[1, 1] * b_y
+    v_3 = t[2] + e[2, 0] * b_x + e[2, 1] * b_y
+    o_1, o_2, o_3 = t[3] + base.spin * e[0, 2], t[4] + base.spin * e[1, 2], t[5] + base.spin * e[2, 2]
+    spin = i[0, 0] * o_1 * o_1 + i[1, 1] * o_2 * o_2 + i[2, 2] * o_3 * o_3
+    spin += 2 * (i[0, 1] * o_1 * o_2 + i[0, 2] * o_1 * o_3 + i[1, 2] * o_2 * o_3)
+    cosine, sine = math.cos(base.turn), math.sin(base.turn)
+    x, y = base.x + cosine * c_x - sine * c_y, base.y + sine * c_x + cosine * c_y
+    height = part.gravity * c_z - part.tilt_x * x - part.tilt_y * y
+    return 0.5 * (part.mass * (v_1 * v_1 + v_2 * v_2 + v_3 * v_3) + spin), part.mass * height

@@ -1,0 +1,119 @@
+"""The integrator of a part with a face: rest, slips, stops and the end of contact, each located.
+
+Between two breakpoints of the drives the surface is one polynomial in time in each cell under the face. A resting part
+stays until `rest` locates when it leaves; it starts by `begin_slip`, slides by steps of `collocation`, and stops with
+forces as they are once its stop is close.
+"""
+
+from __future__ import annotations
+
+from particle.body.averages import enter_all
+from particle.body.face import Face
+from particle.body.memory import HEADING, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
+from particle.body.rest import leaves_rest
+from particle.body.slide import begin_slip, slide
+from particle.body.balance import energy_of
+from particle.body.state import base_at, contact_margin, end_reason, fill_row, rim_margin, settle
+from particle.events.mechanics import Counts, Now
+from particle.events.record import PathRecord, Row, last_row, note, write
+from particle.events.request import Request
+from particle.jit import device, inlined, jit
+from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
+from particle.surface import UNBUILT, Surface
+
+FIRST_STEP = 0.02  # of a stroke
+EVALUATIONS_PER_SPAN, MIN_EVALUATIONS = 20_000, 200_000
+
+
+@jit
+def march_body(surface: Surface, request: Request, face: Face, memory: Memory, record: PathRecord) -> PathRecord:
+    """The path from one request, into `record`; memory.now says how it ended, memory.counts what it took.
+
+    Where a cell is lacking, at `missing_place`, it ends, and must begin anew when there is one.
+    """
+    now: Now = memory.now[0]
+    counts: Counts = memory.counts[0]
+    state, part = memory.state, request.part
+    for k in range(STATE):
+        state[k] = request.start[k]
+    for k in range(3):
+        memory.lead[0, k] = memory.lead[1, k] = 0.0
+    now.time = now.span_end = request.begin
+    now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
+    # A part that is about to slip, as at a row of its path, slips without a further event; so does one that reverses.
+    slips = now.mode == Mode.SLIDING and state[V_X] == 0.0 and state[V_Y] == 0.0 and state[SPIN] == 0.0
+    if slips:
+        now.mode = Mode.RESTING
+    while now.verdict == Verdict.GOES_ON and now.time < request.until:
+        if memory.stop[0] != 0:
+            now.verdict = Verdict.INTERRUPTED
+            break
+        new_span = now.time >= now.span_end
+        cell, end = enter_all(
+            *(surface, memory.local, memory.slots, face, state[X], state[Y], state[HEADING], now.time),
+            *(request.duration, request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)),
+        )
+        if cell < 0:
+            now.verdict = Verdict.LACKS_CELL if cell == UNBUILT else Verdict.LEFT_PLATE
+            break
+        if rim_margin(surface, face, state) < -1e-12 * surface.size:
+            now.verdict = Verdict.LEFT_PLATE
+            break
+        now.span_end = min(end, request.until)
+        if now.span_end <= now.time:
+            now.verdict = Verdict.WORK_LIMIT
+            break
+        if new_span:
+            counts.spans += 1
+            now.h = max(now.h, 1e-4 * request.stroke_time)
+        if record.lengths[0].rows == 0:
+            fill_row(part, face, memory, now.mode, memory.row[0])
+            record = write(record, memory.row[0])
+            if now.mode == Mode.SLIDING:
+                for k in range(3):
+                    memory.lead[0, k] = memory.balance.rates[k]
+        event = NO_EVENT
+        if now.mode == Mode.RESTING:
+            if _rest(surface, request, face, memory) == EventKind.SLIPS:
+                fill_row(part, face, memory, Mode.SLIDING, memory.row[0])
+                if begin_slip(request, face, memory):
+                    record = write(record, memory.row[0])
+                    if not slips:
+                        record = note(record, EventKind.SLIPS, memory.row[0])
+            slips = False
+        else:
+            event = slide(surface, request, face, memory)
+            slips = event == EventKind.REVERSES
+        fill_row(part, face, memory, now.mode, memory.row[0])
+        if event != NO_EVENT:
+            record = note(record, event, memory.row[0])
+        record = write(record, memory.row[0])
+        if counts.evaluations > MIN_EVALUATIONS + EVALUATIONS_PER_SPAN * counts.spans:
+            now.verdict = Verdict.WORK_LIMIT
+    verdict = now.verdict
+    if verdict >= Verdict.DETACHED and verdict <= Verdict.TIPPED:
+        memory.row[0] = last_row(record)
+        record = note(record, END_EVENTS + verdict, memory.row[0])
+    return record
+
+
+@inlined
+def _rest(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
+    """The part stays until it leaves or the span ends; SLIPS or NO_EVENT."""
+    now: Now = memory.now[0]
+    part, state = request.part, memory.state
+    settle(part, face, memory, state, now.time)
+    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance)
+    leaves = leaves_rest(request, face, memory, now.span_end)
+    now.time = min(leaves, now.span_end)
+    settle(part, face, memory, state, now.time)
+    # A part at rest dissipates nothing: all that its energy gains is the surface's work.
+    state[WORK] -= kinetic + potential
+    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance)
+    state[WORK] += kinetic + potential
+    if leaves > now.span_end:
+        return NO_EVENT
+    if contact_margin(part, face, memory) < 0.0:
+        now.verdict = end_reason(surface, part, face, memory, state)
+        return NO_EVENT
+    return EventKind.SLIPS.value

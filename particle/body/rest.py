@@ -1,0 +1,122 @@
+"""How long a resting part with a face stays: the first moment of a span at which friction or contact no longer holds.
+
+At a fixed place all forces are smooth in time over a span. Moments that are dense against the shortest stroke bracket
+the first crossing of the limit; a dip between two of them that nearly reaches it is looked for. So break-away is
+located, not proven: a crossing shorter than a 24th of a stroke that begins and ends between two moments, far from the
+limit at these, is missed.
+"""
+
+from __future__ import annotations
+
+import math
+
+from particle.body.face import Face
+from particle.body.limit import gauge, needed
+from particle.body.memory import Memory
+from particle.body.state import contact_margin, settle
+from particle.events.mechanics import Part
+from particle.events.request import Request
+from particle.friction import friction_limit, friction_slope
+from particle.jit import device_no_arrays
+from particle.body.balance import least_pressure
+
+PER_STROKE, LEAST, MOST = 24, 4, 400  # moments looked at in the shortest stroke, and in a span
+SAFE = 0.5  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
+INNER = 0.8  # of friction's limits: an ellipsoid as large lies within them, on rectangles to 4:1, L-shapes and discs
+NEAR = 0.1  # of the limit: a dip as near is looked at
+HALVINGS = 60
+
+
+@device_no_arrays
+def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
+    """Above 0 where a part at rest in memory.state does not stay at a time [s]: the gauge less 1, or minus the margin.
+
+    Far below the limit an upper bound of the gauge takes its place.
+    """
+    b, s = memory.balance, memory.search
+    if not settle(part, face, memory, memory.state, time):
+        return math.nan
+    margin = contact_margin(part, face, memory)
+    if margin < 0.0:
+        return -margin
+    needed(b, s.needed)
+    turn = s.needed[2] / face.arm
+    force = math.sqrt(s.needed[0] * s.needed[0] + s.needed[1] * s.needed[1] + turn * turn)
+    load = b.load[0]
+    least = friction_limit(part.law, load) + friction_slope(part.law, load) * (least_pressure(face, b) - load)
+    if force < SAFE * INNER * part.law.static_ratio * least:
+        bound = force / (INNER * part.law.static_ratio * least) - 1.0
+    else:
+        bound = gauge(part, face, b, s) - 1.0
+    return max(bound, -margin)
+
+
+@device_no_arrays
+def leaves_rest(request: Request, face: Face, memory: Memory, end: float) -> float:
+    """When [s] the part in memory.state first leaves its rest, from now.time on and before `end` [s]; inf: not."""
+    part, begin = request.part, memory.now[0].time
+    if end - begin <= 0.0:
+        return math.inf
+    count = int(min(max(math.ceil(PER_STROKE * (end - begin) / request.stroke_time), LEAST), MOST))
+    width = (end - begin) / count
+    before, value = math.inf, excess(part, face, memory, begin)
+    if value > 0.0:
+        return begin
+    for k in range(1, count + 1):
+        at = end if k == count else begin + k * width
+        after = excess(part, face, memory, at)
+        if math.isnan(after):
+            return at
+        if k > 1 and value > before and value > after and value > -NEAR:
+            top = _peak(part, face, memory, at - 2 * width, at)
+            if top < math.inf:
+                return _root(part, face, memory, at - 2 * width, top)
+        if after > 0.0:
+            return _root(part, face, memory, at - width, at)
+        before, value = value, after
+    return math.inf
+
+
+@device_no_arrays
+def _peak(part: Part, face: Face, memory: Memory, low: float, high: float) -> float:
+    """A moment above the limit around a maximum between two [s]; inf: there is none. By the golden section."""
+    ratio = 0.5 * (math.sqrt(5.0) - 1.0)
+    a, b = high - ratio * (high - low), low + ratio * (high - low)
+    at_a, at_b = excess(part, face, memory, a), excess(part, face, memory, b)
+    for _ in range(30):
+        if at_a > 0.0:
+            return a
+        if at_b > 0.0:
+            return b
+        if at_a > at_b:
+            high, b, at_b = b, a, at_a
+            a = high - ratio * (high - low)
+            at_a = excess(part, face, memory, a)
+        else:
+            low, a, at_a = a, b, at_b
+            b = low + ratio * (high - low)
+            at_b = excess(part, face, memory, b)
+    return math.inf
+
+
+@device_no_arrays
+def _root(part: Part, face: Face, memory: Memory, low: float, high: float) -> float:
+    """The moment [s] between two at which the excess first is above 0, just beyond it: secants (Illinois), halving."""
+    below, above = excess(part, face, memory, low), excess(part, face, memory, high)
+    secant = True
+    for _ in range(2 * HALVINGS):
+        if high - low <= 1e-15 * abs(high):
+            break
+        middle = 0.5 * (low + high)
+        if secant and math.isfinite(above) and math.isfinite(below):
+            share = -below / (above - below)
+            middle = low + min(max(share, 1e-9), 1.0 - 1e-9) * (high - low)
+        if middle <= low or middle >= high:
+            break
+        value, width = excess(part, face, memory, middle), high - low
+        if value > 0.0:
+            high, above, below = middle, value, 0.5 * below
+        else:
+            low, below, above = middle, value, 0.5 * above
+        secant = high - low < 0.5 * width
+    return high

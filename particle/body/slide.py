@@ -1,0 +1,299 @@
+"""Sliding: how a part with a face begins to slide, its steps, and its stop."""
+
+from __future__ import annotations
+
+import math
+
+from particle.body.averages import within_cells
+from particle.body.balance import find_rates, powers, set_load, solve
+from particle.body.collocation import AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
+from particle.body.face import Face
+from particle.body.limit import gauge, needed, slip_rate
+from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
+from particle.body.state import base_at, contact_margin, end_reason, rim_margin, settle, slip_speed
+from particle.body.balance import energy_of
+from particle.events.mechanics import Now, Part
+from particle.events.request import Request
+from particle.jit import device_no_arrays
+from particle.modes import NO_EVENT, EventKind, Mode, Verdict
+from particle.surface import Surface
+from particle.types import FloatArray
+
+FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
+CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
+BEFORE_STOP = 0.6  # of the time to a stop: the longest step
+STOPPED = 1e-7, 1e-3  # of a stroke, of the tolerance: how close a stop's time and place must be
+STIFF = 0.02  # of a step times friction's own rate, from where on Newton's method finds its stages
+PASSES = 12
+MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-13
+
+
+@device_no_arrays
+def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
+    """Move a resting part that friction no longer holds over the first moment of its slip; False: it stays after all.
+
+    Over that moment d the slip's rate goes from r_0 to r_1 along nearly the same e: it comes to (r_0 + r_1) d/2.
+    """
+    now: Now = memory.now[0]
+    part, state, b, s = request.part, memory.state, memory.balance, memory.search
+    moment = min(FIRST * request.stroke_time, 0.1 * (now.span_end - now.time))
+    settle(part, face, memory, state, now.time)
+    before = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
+    needed(b, s.needed)
+    first = 0.0
+    if gauge(part, face, b, s) > 1.0 + CLOSE:
+        first = max(slip_rate(part, face, b, s), 0.0)
+    settle(part, face, memory, state, now.time + moment)
+    if first == 0.0:
+        needed(b, s.needed)
+        gauge(part, face, b, s)
+    rate = slip_rate(part, face, b, s)
+    now.time += moment
+    speed = 0.5 * (first + rate) * moment
+    if not (rate > 0.0 and speed > 0.0):
+        after = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
+        state[WORK] += after - before
+        return False
+    _, loss = powers(part, b)
+    way = (2 * first + rate) * moment * moment / 6
+    for i in range(3):
+        for j in range(3):
+            b.matrix[i, j] = b.planar[i, j]
+        b.matrix[i, 3] = s.e[i] / (face.arm if i == 2 else 1.0)
+    solve(b.matrix, b.rates)
+    for i in range(3):
+        state[X + i] += way * b.rates[i]
+        state[V_X + i] = speed * b.rates[i]
+        memory.lead[0, i] = rate * b.rates[i]
+        memory.lead[1, i] = (rate - first) / moment * b.rates[i]
+    settle(part, face, memory, state, now.time)
+    find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b)
+    _, loss = powers(part, b)
+    lost = loss / speed * way
+    after = sum(energy_of(part, face, base_at(memory.local, now.time), state[V_X], state[V_Y], state[SPIN], b))
+    state[LOSS] += lost
+    state[WORK] += after - before + lost
+    now.mode, now.h = Mode.SLIDING, moment
+    return True
+
+
+@device_no_arrays
+def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
+    """Move the part on by one step of about now.h [s], or to its stop: STOPS, REVERSES or NO_EVENT."""
+    now: Now = memory.now[0]
+    part, state, b = request.part, memory.state, memory.balance
+    settle(part, face, memory, state, now.time)
+    speed = slip_speed(face, memory)
+    if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
+        now.verdict = Verdict.TIPPED
+        return NO_EVENT
+    slowing = 0.0
+    for i in range(3):
+        rate = b.planar[i, 0] * b.rates[0] + b.planar[i, 1] * b.rates[1] + b.planar[i, 2] * b.rates[2]
+        slowing -= rate * b.slip[i] * (face.arm * face.arm if i == 2 else 1.0) / speed
+    remaining = now.span_end - now.time
+    now.h = remaining if now.h >= 0.9 * remaining else now.h
+    if slowing > 0.0:
+        until = speed / slowing
+        if until <= remaining and until < STOPPED[0] * request.stroke_time and speed * until < STOPPED[1] * request.tolerance:
+            return _stop(request, face, memory, until)
+        now.h = min(now.h, BEFORE_STOP * until)
+    while True:
+        if now.h < MIN_STEP * request.stroke_time and now.h < remaining:
+            now.verdict = Verdict.WORK_LIMIT
+            return NO_EVENT
+        if not _attempt(surface, request, face, memory, now.h):
+            now.h *= 0.4
+            continue
+        error = _error(request, face, memory, now.h) / request.tolerance
+        if not error <= 1.0:
+            now.h *= max(0.2, SAFETY * error ** (-1 / ORDER)) if error > 1.0 else 0.2
+            continue
+        least = math.inf
+        for k in range(STAGES - 1):
+            least = min(least, memory.margins[k])
+        if memory.margins[STAGES - 1] < 0.0:
+            _end_contact(surface, request, face, memory)
+            return NO_EVENT
+        if least < 0.0:
+            now.h *= 0.5
+            continue
+        break
+    last, h = memory.stages[STAGES - 1], now.h
+    for i in range(STATE):
+        state[i] = memory.end[i]
+    for i in range(3):
+        change = memory.rates[STAGES - 1, i] - memory.rates[STAGES - 2, i]
+        memory.lead[0, i], memory.lead[1, i] = memory.rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
+    now.time = now.span_end if h == remaining else now.time + h
+    now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
+    return NO_EVENT
+
+
+@device_no_arrays
+def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
+    """Move a part that stops after `until` [s], with forces as they are, to its stop."""
+    now: Now = memory.now[0]
+    part, state, b = request.part, memory.state, memory.balance
+    work, loss = powers(part, b)
+    state[WORK] += work * until
+    state[LOSS] += 0.5 * loss * until
+    for i in range(3):
+        state[X + i] += 0.5 * until * state[V_X + i]
+        state[V_X + i] = 0.0
+    now.time += until
+    settle(part, face, memory, state, now.time)
+    needed(b, memory.search.needed)
+    now.mode = Mode.RESTING
+    return EventKind.REVERSES.value if gauge(part, face, b, memory.search) > 1.0 + CLOSE else EventKind.STOPS.value
+
+
+@device_no_arrays
+def _end_contact(surface: Surface, request: Request, face: Face, memory: Memory) -> None:
+    """Move the part to where its contact ends within the step tried, just beyond it, by halving the step."""
+    now: Now = memory.now[0]
+    low, high = 0.0, now.h
+    while high - low > 1e-15 * (now.time + high) and high - low > 1e-13 * now.h:
+        middle = 0.5 * (low + high)
+        if _attempt(surface, request, face, memory, middle) and memory.margins[STAGES - 1] < 0.0:
+            high = middle
+        else:
+            low = middle
+    _attempt(surface, request, face, memory, high)
+    for i in range(STATE):
+        memory.state[i] = memory.end[i]
+    now.time += high
+    now.verdict = end_reason(surface, request.part, face, memory, memory.state)
+
+
+@device_no_arrays
+def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: float) -> bool:
+    """Try a step of h [s]: its stages, and its end; False where they are not found or leave their cells."""
+    part, state, stages, b = request.part, memory.state, memory.stages, memory.balance
+    time = memory.now[0].time
+    for k in range(STAGES):
+        t = NODES[k] * h
+        for i in range(3):
+            stages[k, V_X + i] = state[V_X + i] + t * (memory.lead[0, i] + 0.5 * t * memory.lead[1, i])
+    small = 1e-4 * request.tolerance / request.stroke_time
+    for turn in range(PASSES):
+        stiff = False
+        for k in range(STAGES):
+            for i in range(3):
+                total = 0.0
+                for j in range(STAGES):
+                    total += A[k, j] * stages[j, V_X + i]
+                stages[k, X + i] = state[X + i] + h * total
+            if not within_cells(memory.local, memory.slots, face, stages[k, X], stages[k, Y], stages[k, HEADING]):
+                return False
+            if not settle(part, face, memory, stages[k], time + NODES[k] * h):
+                return False
+            speed = slip_speed(face, memory)
+            if not speed > 0.0:
+                return False
+            if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
+                return False
+            for i in range(3):
+                memory.rates[k, i] = b.rates[i]
+            stages[k, WORK], stages[k, LOSS] = powers(part, b)
+            memory.margins[k] = min(
+                contact_margin(part, face, memory), rim_margin(surface, face, stages[k]) / surface.size
+            )
+            if h * stages[k, LOSS] > STIFF * part.mass * speed * speed:
+                stiff = True
+                if not _fill_turns(request, face, memory, k):
+                    return False
+        for k in range(STAGES):
+            for i in range(3):
+                total = 0.0
+                for j in range(STAGES):
+                    total += A[k, j] * memory.rates[j, i]
+                memory.steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
+        if stiff and not _newton(memory, h):
+            return False
+        largest = fastest = 0.0
+        for k in range(STAGES):
+            for i in range(3):
+                unit = face.arm if i == 2 else 1.0
+                stages[k, V_X + i] += memory.steps[3 * k + i]
+                largest = max(largest, unit * abs(memory.steps[3 * k + i]))
+                fastest = max(fastest, unit * abs(stages[k, V_X + i]))
+        if not largest < 1e3 * surface.size / request.stroke_time:
+            return False
+        if turn > 0 and largest <= max(small, 1e-14 * fastest):
+            break
+        if turn == PASSES - 1:
+            return False
+    for i in range(STATE):
+        memory.end[i] = stages[STAGES - 1, i]
+    for i in (WORK, LOSS):
+        total = 0.0
+        for j in range(STAGES):
+            total += A[STAGES - 1, j] * stages[j, i]
+        memory.end[i] = state[i] + h * total
+    for i in range(3):
+        total = 0.0
+        for j in range(STAGES):
+            total += A[STAGES - 1, j] * stages[j, V_X + i]
+        memory.end[X + i] = state[X + i] + h * total
+    return True
+
+
+@device_no_arrays
+def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
+    """By how much a stage's acceleration changes with its rates as friction turns, into memory.turns[k]."""
+    b = memory.balance
+    size = 1e-6 * slip_speed(face, memory)
+    for j in range(3):
+        step = size / face.arm if j == 2 else size
+        s_1, s_2 = b.slip[0] + step * b.planar[0, j], b.slip[1] + step * b.planar[1, j]
+        if not find_rates(request.part, face, s_1, s_2, b.slip[2] + step * b.planar[2, j], b):
+            return False
+        for i in range(3):
+            memory.turns[k, i, j] = (b.rates[i] - memory.rates[k, i]) / step
+    return True
+
+
+@device_no_arrays
+def _newton(memory: Memory, h: float) -> bool:
+    """Turn the stages' residuals memory.steps into Newton's steps."""
+    m = memory.system
+    for k in range(STAGES):
+        for i in range(3):
+            row = 3 * k + i
+            for j in range(STAGES):
+                for n in range(3):
+                    m[row, 3 * j + n] = -h * A[k, j] * memory.turns[j, i, n]
+            m[row, row] += 1.0
+            m[row, 3 * STAGES] = memory.steps[row]
+    return solve(m, memory.steps)
+
+
+@device_no_arrays
+def _error(request: Request, face: Face, memory: Memory, h: float) -> float:
+    """The step's error as a distance [m]; a turn counts at the mean distance from the face's origin.
+
+    An error of a rate counts as what it moves the part by in the shortest stroke.
+    """
+    state, stages, m = memory.state, memory.stages, memory.balance.matrix
+    part = request.part
+    stiff = h * stages[0, LOSS] > 0.0 and memory.turns[0, 0, 0] != 0.0
+    for i in range(3):
+        error = AT_START * memory.lead[0, i]
+        for k in range(STAGES):
+            error += DIFFERENCE[k] * memory.rates[k, i]
+        m[i, 3] = h * error
+        for j in range(3):
+            m[i, j] = (1.0 if i == j else 0.0) - (h * AT_START * memory.turns[0, i, j] if stiff else 0.0)
+    off = memory.steps  # (3,) of it
+    if not solve(m, off[:3]):
+        return math.inf
+    total = 0.0
+    for i in range(3):
+        unit = face.arm if i == 2 else 1.0
+        place = AT_START * state[V_X + i]
+        for k in range(STAGES):
+            place += DIFFERENCE[k] * stages[k, V_X + i]
+        place = h * (place + AT_START * off[i])
+        total += (unit * place) ** 2 + (unit * request.stroke_time * off[i]) ** 2
+    return math.sqrt(total)
