@@ -49,9 +49,10 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
             now.verdict = Verdict.INTERRUPTED
             break
         new_span = now.time >= now.span_end
+        bridged = request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)
+        x, y, heading = state[X], state[Y], state[HEADING]
         cell, end = enter_all(
-            *(surface, memory.local, memory.slots, face, state[X], state[Y], state[HEADING], now.time),
-            *(request.duration, request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)),
+            surface, memory.local, memory.slots, face, x, y, heading, now.time, request.duration, bridged
         )
         if cell < 0:
             now.verdict = Verdict.LACKS_CELL if cell == UNBUILT else Verdict.LEFT_PLATE
