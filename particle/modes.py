@@ -15,7 +15,7 @@ class Mode(enum.IntEnum):
 
 
 class Verdict(enum.IntEnum):
-    """How a path ends; the last two only for now: until there is a cell, and when nobody waits for it any more."""
+    """How a path ends; the last three are no ends: a cell is lacking, nobody waits any more, or a jump is refused."""
 
     GOES_ON = 0
     DETACHED = 1
@@ -25,6 +25,7 @@ class Verdict(enum.IntEnum):
     WORK_LIMIT = 5
     LACKS_CELL = 6
     INTERRUPTED = 7
+    JUMPS = 8
 
 
 class EventKind(enum.IntEnum):

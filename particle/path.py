@@ -140,6 +140,9 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
     if computed.verdict == Verdict.INTERRUPTED:
         return None
     rows = computed.rows
+    if computed.verdict == Verdict.JUMPS:
+        at = float(rows["time"][-1])
+        raise ValueError(f"Input surface of simulate must move without jumps of its velocity under a Body; at {at:g} s it jumps")
 
     def sampler(times: FloatArray) -> Rows:
         """The rows at ascending times [s]: pieces of the path, each from the row before."""

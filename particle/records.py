@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,14 @@ if TYPE_CHECKING:
 else:
     _Row = np.void
 
-_KINDS = {"float": np.float64, "int": np.int64}
+_KINDS = {float: np.float64, int: np.int64}
 
 
 class Record(_Row):
-    """One row. A subclass names its numbers by annotations, `name: float` or `name: int`."""
+    """One row. A subclass names its numbers by annotations: `name: float`, `name: int`, and of arrays of floats
+
+    `name: Annotated[FloatArray, 3, 4]` with their shapes.
+    """
 
     def __init_subclass__(cls) -> None:
         for name in cls.__annotations__:
@@ -31,7 +34,11 @@ AnyRecord = TypeVar("AnyRecord", bound=Record)
 @cache
 def record_type(kind: type[Record]) -> np.dtype[Any]:
     """The type of arrays of such rows."""
-    return np.dtype((kind, [(name, _KINDS[annotation]) for name, annotation in kind.__annotations__.items()]))
+    fields: list[Any] = []
+    for name, hint in get_type_hints(kind, include_extras=True).items():
+        shape = getattr(hint, "__metadata__", None)
+        fields.append((name, np.float64, shape) if shape else (name, _KINDS[hint]))
+    return np.dtype((kind, fields))
 
 
 def new_records(kind: type[AnyRecord], count: int = 1) -> NDArray[AnyRecord]:

@@ -122,7 +122,7 @@ def simulate(
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of {type(part).__name__} must lie on the plate; got {tuple(part.position)!r} m")
     if isinstance(part, Body):
-        wrong += _face_faults(surface, scheme, after_detachment)
+        wrong += _face_faults(scheme, after_detachment)
     elif surface.turns:
         wrong.append("Input part of simulate must be a Body on a base that turns; got a Micropart")
     if wrong:
@@ -144,15 +144,13 @@ def _points(tolerance: float) -> int:
     return 3 if tolerance > 1e-8 else (4 if tolerance > 1e-10 else 5)
 
 
-def _face_faults(surface: SurfaceMotion, scheme: str, after_detachment: str) -> list[str]:
+def _face_faults(scheme: str, after_detachment: str) -> list[str]:
     """What a part with a face does not go with."""
     wrong = []
     if scheme != "events":
         wrong.append(f"Input scheme of simulate must be 'events' with a Body; got {scheme!r}")
     if after_detachment == "fly":
         wrong.append("Input after_detachment of simulate must be 'stop' with a Body; got 'fly'")
-    if (surface.drives.jump[:, 0] > 0).any():
-        wrong.append("Input surface of simulate must move without jumps of its velocity under a Body")
     return wrong
 
 

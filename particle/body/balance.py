@@ -20,9 +20,7 @@ is linear in (N, M) but for Q(N), and u follows from 3 x 3 systems.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
+from typing import Annotated, NamedTuple
 
 from particle.body.averages import AT, OO, OT, PLACE, ROWS, T, TT, XO, XT, XX, XY, YO, YT, YY, O, X, Y
 from particle.body.face import Face
@@ -30,6 +28,7 @@ from particle.body.wrench import fill_wrenches
 from particle.events.mechanics import Part
 from particle.friction import friction_limit, friction_slope
 from particle.jit import device_no_arrays
+from particle.records import Record
 from particle.types import FloatArray
 
 MOST_PASSES, SETTLED = 30, 1e-14
@@ -49,33 +48,25 @@ class Base(NamedTuple):
     spin_rate: float
 
 
-class Balance(NamedTuple):
+class Balance(Record):
     """Scratch memory of the equations at one state."""
 
-    averages: FloatArray  # (15, 9)
-    axes: FloatArray  # (3, 3), rows e_1, e_2, n
-    unstretch: FloatArray  # (2, 2), U^-1
-    rate: FloatArray  # (9,), y'
-    second: FloatArray  # (9,), y'' at u = 0
-    twist: FloatArray  # (6,), velocity of P_0 and angular velocity in body axes
-    planar: FloatArray  # (3, 3), K
-    normal: FloatArray  # (3, 3), B
-    workless: FloatArray  # (3, 3), P
-    forces: FloatArray  # (6, 4), (f_1, f_2, tau, N, M_1, M_2): at u = 0, then by u
-    carried: FloatArray  # (6,), the face's twist at (X', Y', theta') = 0, like `forces`
-    wrenches: FloatArray  # (3, 3), of `wrench`
-    matrix: FloatArray  # (3, 4), a system of equations
-    rates: FloatArray  # (3,), u
-    slip: FloatArray  # (3,), the face's planar twist
-    load: FloatArray  # (3,), N + squeeze, M_1, M_2
-
-
-def new_balance() -> Balance:
-    return Balance(
-        *(np.zeros((ROWS, PLACE)), np.zeros((3, 3)), np.zeros((2, 2)), np.zeros(PLACE), np.zeros(PLACE), np.zeros(6)),
-        *(np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((6, 4)), np.zeros(6)),
-        *(np.zeros((3, 3)), np.zeros((3, 4)), np.zeros(3), np.zeros(3), np.zeros(3)),
-    )
+    averages: Annotated[FloatArray, ROWS, PLACE]
+    axes: Annotated[FloatArray, 3, 3]  # rows e_1, e_2, n
+    unstretch: Annotated[FloatArray, 2, 2]  # U^-1
+    rate: Annotated[FloatArray, PLACE]  # y'
+    second: Annotated[FloatArray, PLACE]  # y'' at u = 0
+    twist: Annotated[FloatArray, 6]  # velocity of P_0 and angular velocity in body axes
+    planar: Annotated[FloatArray, 3, 3]  # K
+    normal: Annotated[FloatArray, 3, 3]  # B
+    workless: Annotated[FloatArray, 3, 3]  # P
+    forces: Annotated[FloatArray, 6, 4]  # (f_1, f_2, tau, N, M_1, M_2): at u = 0, then by u
+    carried: Annotated[FloatArray, 6]  # the face's twist at (X', Y', theta') = 0, like `forces`
+    wrenches: Annotated[FloatArray, 3, 3]  # of `wrench`
+    matrix: Annotated[FloatArray, 3, 4]  # a system of equations
+    rates: Annotated[FloatArray, 3]  # u
+    slip: Annotated[FloatArray, 3]  # the face's planar twist
+    load: Annotated[FloatArray, 3]  # N + squeeze, M_1, M_2
 
 
 @device_no_arrays

@@ -12,9 +12,7 @@ e with K u(e) = r e for u under friction against e. Slips are (v_1, v_2, c omega
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
+from typing import Annotated
 
 from particle.body.balance import Balance, find_rates
 from particle.body.face import Face
@@ -22,24 +20,21 @@ from particle.body.wrench import fill_wrenches
 from particle.events.mechanics import Part
 from particle.friction import friction_limit, friction_slope
 from particle.jit import device_no_arrays
+from particle.records import Record
 from particle.types import FloatArray
 
 TURNS, SETTLED = 60, 1e-12
 STEP = 1e-6  # of a slip, to see how friction turns with it
 
 
-class Search(NamedTuple):
-    """Scratch memory of the searches; all slips and wrenches are (3,)."""
+class Search(Record):
+    """Scratch memory of the searches: slips and wrenches."""
 
-    needed: FloatArray
-    e: FloatArray
-    normal: FloatArray
-    plane: FloatArray  # (2, 3)
-    friction: FloatArray
-
-
-def new_search() -> Search:
-    return Search(np.zeros(3), np.zeros(3), np.zeros(3), np.zeros((2, 3)), np.zeros(3))
+    needed: Annotated[FloatArray, 3]
+    e: Annotated[FloatArray, 3]
+    normal: Annotated[FloatArray, 3]
+    plane: Annotated[FloatArray, 2, 3]
+    friction: Annotated[FloatArray, 3]
 
 
 @device_no_arrays

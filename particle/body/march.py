@@ -21,7 +21,7 @@ from particle.jit import device, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface
 
-FIRST_STEP = 0.02  # of a stroke
+MIN_JUMP = 1e-6  # of the surface's size in a stroke: a jump of its velocity
 EVALUATIONS_PER_SPAN, MIN_EVALUATIONS = 20_000, 200_000
 
 
@@ -33,11 +33,11 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     """
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
-    state, part = memory.state, request.part
+    state, part = memory.step[0].state, request.part
     for k in range(STATE):
         state[k] = request.start[k]
     for k in range(3):
-        memory.lead[0, k] = memory.lead[1, k] = 0.0
+        memory.step[0].lead[0, k] = memory.step[0].lead[1, k] = 0.0
     now.time = now.span_end = request.begin
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
     # A part that is about to slip, as at a row of its path, slips without a further event; so does one that reverses.
@@ -49,6 +49,11 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
             now.verdict = Verdict.INTERRUPTED
             break
         new_span = now.time >= now.span_end
+        crosses = request.jumps and new_span and counts.spans > 0
+        if crosses:
+            settle(part, face, memory, state, now.time)
+            for k in range(6):
+                memory.step[0].carried[k] = memory.balance[0].carried[k]
         bridged = request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)
         x, y, heading = state[X], state[Y], state[HEADING]
         cell, end = enter_all(
@@ -64,6 +69,9 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
         if now.span_end <= now.time:
             now.verdict = Verdict.WORK_LIMIT
             break
+        if crosses and _jumps(surface, request, face, memory):
+            now.verdict = Verdict.JUMPS
+            break
         if new_span:
             counts.spans += 1
             now.h = max(now.h, 1e-4 * request.stroke_time)
@@ -72,7 +80,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
             record = write(record, memory.row[0])
             if now.mode == Mode.SLIDING:
                 for k in range(3):
-                    memory.lead[0, k] = memory.balance.rates[k]
+                    memory.step[0].lead[0, k] = memory.balance[0].rates[k]
         event = NO_EVENT
         if now.mode == Mode.RESTING:
             if _rest(surface, request, face, memory) == EventKind.SLIPS:
@@ -99,18 +107,29 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
 
 
 @inlined
+def _jumps(surface: Surface, request: Request, face: Face, memory: Memory) -> bool:
+    """Whether the surface's velocity under the face jumps from memory.step[0].carried as a span begins."""
+    settle(request.part, face, memory, memory.step[0].state, memory.now[0].time)
+    largest = 0.0
+    for k in range(6):
+        unit = face.reach if k == 2 or k > 3 else 1.0
+        largest = max(largest, unit * abs(memory.balance[0].carried[k] - memory.step[0].carried[k]))
+    return largest > MIN_JUMP * surface.size / request.stroke_time
+
+
+@inlined
 def _rest(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
     """The part stays until it leaves or the span ends; SLIPS or NO_EVENT."""
     now: Now = memory.now[0]
-    part, state = request.part, memory.state
+    part, state = request.part, memory.step[0].state
     settle(part, face, memory, state, now.time)
-    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance)
+    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance[0])
     leaves = leaves_rest(request, face, memory, now.span_end)
     now.time = min(leaves, now.span_end)
     settle(part, face, memory, state, now.time)
     # A part at rest dissipates nothing: all that its energy gains is the surface's work.
     state[WORK] -= kinetic + potential
-    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance)
+    kinetic, potential = energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, memory.balance[0])
     state[WORK] += kinetic + potential
     if leaves > now.span_end:
         return NO_EVENT

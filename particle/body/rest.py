@@ -29,12 +29,12 @@ HALVINGS = 60
 
 @device_no_arrays
 def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
-    """Above 0 where a part at rest in memory.state does not stay at a time [s]: the gauge less 1, or minus the margin.
+    """Above 0 where a part at rest in memory.step[0].state does not stay at a time [s]: the gauge less 1, or minus the margin.
 
     Far below the limit an upper bound of the gauge takes its place.
     """
-    b, s = memory.balance, memory.search
-    if not settle(part, face, memory, memory.state, time):
+    b, s = memory.balance[0], memory.search[0]
+    if not settle(part, face, memory, memory.step[0].state, time):
         return math.nan
     margin = contact_margin(part, face, memory)
     if margin < 0.0:
@@ -53,7 +53,7 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
 
 @device_no_arrays
 def leaves_rest(request: Request, face: Face, memory: Memory, end: float) -> float:
-    """When [s] the part in memory.state first leaves its rest, from now.time on and before `end` [s]; inf: not."""
+    """When [s] the part in memory.step[0].state first leaves its rest, from now.time on and before `end` [s]; inf: not."""
     part, begin = request.part, memory.now[0].time
     if end - begin <= 0.0:
         return math.inf

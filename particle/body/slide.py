@@ -35,7 +35,7 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     Over that moment d the slip's rate goes from r_0 to r_1 along nearly the same e: it comes to (r_0 + r_1) d/2.
     """
     now: Now = memory.now[0]
-    part, state, b, s = request.part, memory.state, memory.balance, memory.search
+    part, state, b, s = request.part, memory.step[0].state, memory.balance[0], memory.search[0]
     moment = min(FIRST * request.stroke_time, 0.1 * (now.span_end - now.time))
     settle(part, face, memory, state, now.time)
     before = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
@@ -64,8 +64,8 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     for i in range(3):
         state[X + i] += way * b.rates[i]
         state[V_X + i] = speed * b.rates[i]
-        memory.lead[0, i] = rate * b.rates[i]
-        memory.lead[1, i] = (rate - first) / moment * b.rates[i]
+        memory.step[0].lead[0, i] = rate * b.rates[i]
+        memory.step[0].lead[1, i] = (rate - first) / moment * b.rates[i]
     settle(part, face, memory, state, now.time)
     find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b)
     _, loss = powers(part, b)
@@ -81,7 +81,7 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
 def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
     """Move the part on by one step of about now.h [s], or to its stop: STOPS, REVERSES or NO_EVENT."""
     now: Now = memory.now[0]
-    part, state, b = request.part, memory.state, memory.balance
+    part, state, b = request.part, memory.step[0].state, memory.balance[0]
     settle(part, face, memory, state, now.time)
     speed = slip_speed(face, memory)
     if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
@@ -111,20 +111,20 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
             continue
         least = math.inf
         for k in range(STAGES - 1):
-            least = min(least, memory.margins[k])
-        if memory.margins[STAGES - 1] < 0.0:
+            least = min(least, memory.step[0].margins[k])
+        if memory.step[0].margins[STAGES - 1] < 0.0:
             _end_contact(surface, request, face, memory)
             return NO_EVENT
         if least < 0.0:
             now.h *= 0.5
             continue
         break
-    last, h = memory.stages[STAGES - 1], now.h
+    last, h = memory.step[0].stages[STAGES - 1], now.h
     for i in range(STATE):
-        state[i] = memory.end[i]
+        state[i] = memory.step[0].end[i]
     for i in range(3):
-        change = memory.rates[STAGES - 1, i] - memory.rates[STAGES - 2, i]
-        memory.lead[0, i], memory.lead[1, i] = memory.rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
+        change = memory.step[0].rates[STAGES - 1, i] - memory.step[0].rates[STAGES - 2, i]
+        memory.step[0].lead[0, i], memory.step[0].lead[1, i] = memory.step[0].rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
     now.time = now.span_end if h == remaining else now.time + h
     now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
     return NO_EVENT
@@ -134,7 +134,7 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
 def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
     """Move a part that stops after `until` [s], with forces as they are, to its stop."""
     now: Now = memory.now[0]
-    part, state, b = request.part, memory.state, memory.balance
+    part, state, b = request.part, memory.step[0].state, memory.balance[0]
     work, loss = powers(part, b)
     state[WORK] += work * until
     state[LOSS] += 0.5 * loss * until
@@ -143,9 +143,9 @@ def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
         state[V_X + i] = 0.0
     now.time += until
     settle(part, face, memory, state, now.time)
-    needed(b, memory.search.needed)
+    needed(b, memory.search[0].needed)
     now.mode = Mode.RESTING
-    return EventKind.REVERSES.value if gauge(part, face, b, memory.search) > 1.0 + CLOSE else EventKind.STOPS.value
+    return EventKind.REVERSES.value if gauge(part, face, b, memory.search[0]) > 1.0 + CLOSE else EventKind.STOPS.value
 
 
 @device_no_arrays
@@ -155,26 +155,26 @@ def _end_contact(surface: Surface, request: Request, face: Face, memory: Memory)
     low, high = 0.0, now.h
     while high - low > 1e-15 * (now.time + high) and high - low > 1e-13 * now.h:
         middle = 0.5 * (low + high)
-        if _attempt(surface, request, face, memory, middle) and memory.margins[STAGES - 1] < 0.0:
+        if _attempt(surface, request, face, memory, middle) and memory.step[0].margins[STAGES - 1] < 0.0:
             high = middle
         else:
             low = middle
     _attempt(surface, request, face, memory, high)
     for i in range(STATE):
-        memory.state[i] = memory.end[i]
+        memory.step[0].state[i] = memory.step[0].end[i]
     now.time += high
-    now.verdict = end_reason(surface, request.part, face, memory, memory.state)
+    now.verdict = end_reason(surface, request.part, face, memory, memory.step[0].state)
 
 
 @device_no_arrays
 def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: float) -> bool:
     """Try a step of h [s]: its stages, and its end; False where they are not found or leave their cells."""
-    part, state, stages, b = request.part, memory.state, memory.stages, memory.balance
+    part, state, stages, b = request.part, memory.step[0].state, memory.step[0].stages, memory.balance[0]
     time = memory.now[0].time
     for k in range(STAGES):
         t = NODES[k] * h
         for i in range(3):
-            stages[k, V_X + i] = state[V_X + i] + t * (memory.lead[0, i] + 0.5 * t * memory.lead[1, i])
+            stages[k, V_X + i] = state[V_X + i] + t * (memory.step[0].lead[0, i] + 0.5 * t * memory.step[0].lead[1, i])
     small = 1e-4 * request.tolerance / request.stroke_time
     for turn in range(PASSES):
         stiff = False
@@ -194,9 +194,9 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
             if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
                 return False
             for i in range(3):
-                memory.rates[k, i] = b.rates[i]
+                memory.step[0].rates[k, i] = b.rates[i]
             stages[k, WORK], stages[k, LOSS] = powers(part, b)
-            memory.margins[k] = min(
+            memory.step[0].margins[k] = min(
                 contact_margin(part, face, memory), rim_margin(surface, face, stages[k]) / surface.size
             )
             if h * stages[k, LOSS] > STIFF * part.mass * speed * speed:
@@ -207,16 +207,16 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
             for i in range(3):
                 total = 0.0
                 for j in range(STAGES):
-                    total += A[k, j] * memory.rates[j, i]
-                memory.steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
+                    total += A[k, j] * memory.step[0].rates[j, i]
+                memory.step[0].steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
         if stiff and not _newton(memory, h):
             return False
         largest = fastest = 0.0
         for k in range(STAGES):
             for i in range(3):
                 unit = face.arm if i == 2 else 1.0
-                stages[k, V_X + i] += memory.steps[3 * k + i]
-                largest = max(largest, unit * abs(memory.steps[3 * k + i]))
+                stages[k, V_X + i] += memory.step[0].steps[3 * k + i]
+                largest = max(largest, unit * abs(memory.step[0].steps[3 * k + i]))
                 fastest = max(fastest, unit * abs(stages[k, V_X + i]))
         if not largest < 1e3 * surface.size / request.stroke_time:
             return False
@@ -225,24 +225,24 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
         if turn == PASSES - 1:
             return False
     for i in range(STATE):
-        memory.end[i] = stages[STAGES - 1, i]
+        memory.step[0].end[i] = stages[STAGES - 1, i]
     for i in (WORK, LOSS):
         total = 0.0
         for j in range(STAGES):
             total += A[STAGES - 1, j] * stages[j, i]
-        memory.end[i] = state[i] + h * total
+        memory.step[0].end[i] = state[i] + h * total
     for i in range(3):
         total = 0.0
         for j in range(STAGES):
             total += A[STAGES - 1, j] * stages[j, V_X + i]
-        memory.end[X + i] = state[X + i] + h * total
+        memory.step[0].end[X + i] = state[X + i] + h * total
     return True
 
 
 @device_no_arrays
 def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
-    """By how much a stage's acceleration changes with its rates as friction turns, into memory.turns[k]."""
-    b = memory.balance
+    """By how much a stage's acceleration changes with its rates as friction turns, into memory.step[0].turns[k]."""
+    b = memory.balance[0]
     size = 1e-6 * slip_speed(face, memory)
     for j in range(3):
         step = size / face.arm if j == 2 else size
@@ -250,23 +250,23 @@ def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
         if not find_rates(request.part, face, s_1, s_2, b.slip[2] + step * b.planar[2, j], b):
             return False
         for i in range(3):
-            memory.turns[k, i, j] = (b.rates[i] - memory.rates[k, i]) / step
+            memory.step[0].turns[k, i, j] = (b.rates[i] - memory.step[0].rates[k, i]) / step
     return True
 
 
 @device_no_arrays
 def _newton(memory: Memory, h: float) -> bool:
-    """Turn the stages' residuals memory.steps into Newton's steps."""
-    m = memory.system
+    """Turn the stages' residuals memory.step[0].steps into Newton's steps."""
+    m = memory.step[0].system
     for k in range(STAGES):
         for i in range(3):
             row = 3 * k + i
             for j in range(STAGES):
                 for n in range(3):
-                    m[row, 3 * j + n] = -h * A[k, j] * memory.turns[j, i, n]
+                    m[row, 3 * j + n] = -h * A[k, j] * memory.step[0].turns[j, i, n]
             m[row, row] += 1.0
-            m[row, 3 * STAGES] = memory.steps[row]
-    return solve(m, memory.steps)
+            m[row, 3 * STAGES] = memory.step[0].steps[row]
+    return solve(m, memory.step[0].steps)
 
 
 @device_no_arrays
@@ -275,17 +275,17 @@ def _error(request: Request, face: Face, memory: Memory, h: float) -> float:
 
     An error of a rate counts as what it moves the part by in the shortest stroke.
     """
-    state, stages, m = memory.state, memory.stages, memory.balance.matrix
+    state, stages, m = memory.step[0].state, memory.step[0].stages, memory.balance[0].matrix
     part = request.part
-    stiff = h * stages[0, LOSS] > 0.0 and memory.turns[0, 0, 0] != 0.0
+    stiff = h * stages[0, LOSS] > 0.0 and memory.step[0].turns[0, 0, 0] != 0.0
     for i in range(3):
-        error = AT_START * memory.lead[0, i]
+        error = AT_START * memory.step[0].lead[0, i]
         for k in range(STAGES):
-            error += DIFFERENCE[k] * memory.rates[k, i]
+            error += DIFFERENCE[k] * memory.step[0].rates[k, i]
         m[i, 3] = h * error
         for j in range(3):
-            m[i, j] = (1.0 if i == j else 0.0) - (h * AT_START * memory.turns[0, i, j] if stiff else 0.0)
-    off = memory.steps  # (3,) of it
+            m[i, j] = (1.0 if i == j else 0.0) - (h * AT_START * memory.step[0].turns[0, i, j] if stiff else 0.0)
+    off = memory.step[0].steps  # (3,) of it
     if not solve(m, off[:3]):
         return math.inf
     total = 0.0

@@ -42,7 +42,7 @@ def base_at(local: LocalSurface, time: float) -> Base:
 @device_no_arrays
 def settle(part: Part, face: Face, memory: Memory, state: FloatArray, time: float) -> bool:
     """Set up the equations at a state and time; False where there are none."""
-    b = memory.balance
+    b = memory.balance[0]
     fill_averages(memory.local, memory.slots, face, state[X], state[Y], state[HEADING], time, b.averages)
     base = base_at(memory.local, time)
     memory.counts[0].evaluations += 1
@@ -56,7 +56,7 @@ def settle(part: Part, face: Face, memory: Memory, state: FloatArray, time: floa
 @device_no_arrays
 def slip_speed(face: Face, memory: Memory) -> float:
     """The speed [m/s] of the face over the surface, the turn's at the mean distance from its origin."""
-    s = memory.balance.slip
+    s = memory.balance[0].slip
     turn = face.arm * s[2]
     return math.sqrt(s[0] * s[0] + s[1] * s[1] + turn * turn)
 
@@ -64,12 +64,12 @@ def slip_speed(face: Face, memory: Memory) -> float:
 @device_no_arrays
 def contact_margin(part: Part, face: Face, memory: Memory) -> float:
     """How far the contact is from its end under b.load, dimensionless: pull-off, the largest load, a lifted edge."""
-    load, weight = memory.balance.load[0], part.mass * max(1.0, abs(part.gravity))
+    load, weight = memory.balance[0].load[0], part.mass * max(1.0, abs(part.gravity))
     least = math.inf
     if math.isfinite(part.law.pull_off):
         least = (load + part.law.pull_off) / weight
         if face.tips:
-            least = min(least, (least_pressure(face, memory.balance) + part.law.pull_off) / weight)
+            least = min(least, (least_pressure(face, memory.balance[0]) + part.law.pull_off) / weight)
     if math.isfinite(part.law.largest_load):
         least = min(least, (part.law.largest_load - load) / weight)
     return least
@@ -92,7 +92,7 @@ def rim_margin(surface: Surface, face: Face, state: FloatArray) -> float:
 @device_no_arrays
 def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: FloatArray) -> int:
     """Why contact ends under b.load."""
-    load = memory.balance.load[0]
+    load = memory.balance[0].load[0]
     if rim_margin(surface, face, state) < 0.0:
         return Verdict.LEFT_PLATE
     if load < -part.law.pull_off:
@@ -102,8 +102,8 @@ def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: 
 
 @device_no_arrays
 def fill_row(part: Part, face: Face, memory: Memory, mode: int, row: Row) -> None:
-    """The row of memory.state into `row`."""
-    state, b, time = memory.state, memory.balance, memory.now[0].time
+    """The row of memory.step[0].state into `row`."""
+    state, b, time = memory.step[0].state, memory.balance[0], memory.now[0].time
     row.time, row.x, row.y, row.heading = time, state[X], state[Y], state[HEADING]
     row.v_x, row.v_y, row.spin = state[V_X], state[V_Y], state[SPIN]
     row.mode, row.work, row.dissipated = mode, state[WORK], state[LOSS]

@@ -155,7 +155,7 @@ def _elliptic(k: float) -> tuple[float, float]:
     if k >= 1.0:
         return 0.0, 1.0
     a, b, c, power, total = 1.0, math.sqrt((1.0 - k) * (1.0 + k)), k, 0.5, 0.5 * k * k
-    while c > 1e-16 * a:
+    while c > 1e-14 * a:  # c is squared in each turn
         a, b, c = 0.5 * (a + b), math.sqrt(a * b), 0.5 * (a - b)
         power *= 2.0
         total += power * c * c
