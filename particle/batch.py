@@ -12,12 +12,13 @@ from typing import TypeGuard
 
 import numpy as np
 
+from particle.body import Body
 from particle.drives import AnyDrive
 from particle.friction import Contact, FrictionLaw
 from particle.interrupt import wait
 from particle.path import find_path
-from particle.simulation import Micropart, faults, new_request
-from particle.surface import SurfaceMotion, rim_gap
+from particle.simulation import Micropart, face_of, faults, new_request, part_faults
+from particle.surface import SurfaceMotion
 from particle.trajectory import Trajectory
 
 PATIENCE = 0.5  # s that threads have to stop
@@ -33,7 +34,7 @@ class Interrupted(KeyboardInterrupt):
 
 def simulate_many(
     surface: SurfaceMotion,
-    parts: Sequence[Micropart],
+    parts: Sequence[Micropart | Body],
     friction: Contact | Iterable[Contact],
     duration: float,
     gravity: float | Sequence[float] = 9.80665,
@@ -52,7 +53,7 @@ def simulate_many(
     ----------
     surface : SurfaceMotion
         The moving surface.
-    parts : sequence of Micropart
+    parts : sequence of Micropart or Body
         The parts.
     friction : friction law or sequence of them
         One for all, or one for each part.
@@ -85,10 +86,9 @@ def simulate_many(
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
     wrong += faults(surface, duration, gravity, tolerance, after_detachment)
-    record = surface.record
-    for k, part in enumerate(parts):
-        if not rim_gap(record, *map(float, part.position)) >= 0:
-            wrong.append(f"Input position of part {k} must lie on the plate; got {tuple(part.position)!r} m")
+    wrong += [fault for k, part in enumerate(parts) for fault in part_faults(surface, part, f"part {k}")]
+    if after_detachment == "fly" and any(isinstance(part, Body) for part in parts):
+        wrong.append("Input after_detachment of simulate_many must be 'stop' with a Body; got 'fly'")
     if wrong:
         raise ValueError("; ".join(wrong))
     found: list[Trajectory | None] = [None] * len(parts)
@@ -97,7 +97,7 @@ def simulate_many(
     def path(k: int) -> None:
         driven = surface if drives is None else surface.driven_by(drives[k])
         request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
-        found[k] = find_path(driven, request, tolerance, stop)
+        found[k] = find_path(driven, request, tolerance, stop, face_of(parts[k], tolerance))
 
     pool, handed_out = ThreadPoolExecutor(threads or processors()), []
     try:

@@ -78,6 +78,13 @@ class Footprint:
         """m, how far the face's farthest point is from its centroid."""
         return self.radius or float(np.hypot(*self.corners.T).max())
 
+    @cached_property
+    def hull(self) -> FloatArray:
+        """(k, 2) m, the corners of the convex hull: those on which a part can tip."""
+        from scipy.spatial import ConvexHull  # here, because points do without it
+
+        return self.corners[ConvexHull(self.corners).vertices] if len(self.corners) else self.corners
+
     def rule(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Places (n, 2) [m] and weights (n,) that add up to 1: the mean over the face of a smooth function.
 
@@ -119,7 +126,7 @@ class Footprint:
         # An orthonormal basis under the rule, so that pivots and weights are well conditioned.
         basis = np.linalg.solve(np.linalg.cholesky((powers * weights) @ powers.T), powers)
         chosen = np.sort(qr(basis, mode="economic", pivoting=True)[2][: len(powers)])
-        return places[chosen], np.linalg.solve(basis[:, chosen], basis @ weights)
+        return places[chosen], np.asarray(np.linalg.solve(basis[:, chosen], basis @ weights), dtype=float)
 
 
 def _moments(corners: FloatArray) -> tuple[float, FloatArray, FloatArray]:

@@ -142,7 +142,9 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
     rows = computed.rows
     if computed.verdict == Verdict.JUMPS:
         at = float(rows["time"][-1])
-        raise ValueError(f"Input surface of simulate must move without jumps of its velocity under a Body; at {at:g} s it jumps")
+        raise ValueError(
+            f"Input surface of simulate must move without jumps of velocity under a Body; got one at {at:g} s"
+        )
 
     def sampler(times: FloatArray) -> Rows:
         """The rows at ascending times [s]: pieces of the path, each from the row before."""
@@ -260,13 +262,13 @@ def _trajectory(
     face: Face | None = None,
 ) -> Trajectory:
     rows = computed.rows
-    samples = samples_of(rows)
+    samples = samples_of(rows, face is not None)
     if computed.verdict == Verdict.GOES_ON:
         outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:
         outcome = _OUTCOMES[Verdict(computed.verdict)]
     return Trajectory(
-        *samples,
+        **samples._asdict(),
         events=[
             Event(EventKind(kind), time, (x, y), speed, load, heading if face else None)
             for kind, time, x, y, speed, load, heading in computed.events.tolist()
@@ -278,7 +280,4 @@ def _trajectory(
         ),
         sampler=sampler,
         contact=partial(_contact_states, surface, request),
-        heading=rows["heading"] if face else None,
-        spin=rows["spin"] if face else None,
-        pressure_margin=rows["pressure"] if face else None,
     )

@@ -28,6 +28,12 @@ COLUMNS: Final = {
     "friction_force": ("N", "size of the friction"),
 }
 """The columns of a path, but its state, with their units and meanings."""
+FACE_COLUMNS: Final = {
+    "heading": ("rad", "heading of the part, counter-clockwise from the plate's x"),
+    "spin": ("rad/s", "rate of the heading"),
+    "pressure_margin": ("1", "least pressure on the face over the mean; below 0 an edge lifts"),
+}
+"""Further columns of a part with a face."""
 EVENTS: Final = {"event_time": "s", "event_x": "m", "event_y": "m", "event_speed": "m/s", "event_load": "N"}
 STATES: Final = ("stick", "slip", "flight")
 """The states by their number."""
@@ -56,6 +62,14 @@ class Samples(NamedTuple):
     normal_force: FloatArray  # (k,) N, net, of the contact
     friction_force: FloatArray  # (k,) N, its magnitude
     state: IntArray  # (k,) State
+    heading: FloatArray | None = None  # (k,) rad, of a part with a face, as are these
+    spin: FloatArray | None = None  # (k,) rad/s
+    pressure_margin: FloatArray | None = None  # (k,) the least pressure on the face over the mean
+
+    def chosen(self, rows: Any) -> Samples:
+        """Those of `rows`, an index or mask of numpy."""
+        columns: Any = (None if column is None else column[rows] for column in self)
+        return Samples(*columns)
 
 
 class RoughContact(Protocol):
@@ -90,8 +104,8 @@ class ContactSamples(NamedTuple):
     state: IntArray  # (k,) State
 
 
-def samples_of(rows: NDArray[Any]) -> Samples:
-    """The rows (k,) of a record, for people."""
+def samples_of(rows: NDArray[Any], face: bool = False) -> Samples:
+    """The rows (k,) of a record, for people; face: of a part that has one."""
     return Samples(
         time=rows["time"],
         position=np.column_stack([rows["x"], rows["y"]]),
@@ -101,6 +115,9 @@ def samples_of(rows: NDArray[Any]) -> Samples:
         normal_force=rows["load"],
         friction_force=rows["friction"],
         state=_states(rows),
+        heading=rows["heading"] if face else None,
+        spin=rows["spin"] if face else None,
+        pressure_margin=rows["pressure"] if face else None,
     )
 
 
@@ -140,6 +157,9 @@ def dataset_of(samples: Samples, events: Sequence[Event], **attributes: Any) -> 
         name: ("time", column[last], {"units": unit, "long_name": meaning})
         for (name, (unit, meaning)), column in zip(COLUMNS.items(), columns, strict=True)
     }
+    for name, (unit, meaning) in FACE_COLUMNS.items():
+        if (column := getattr(samples, name)) is not None:
+            variables[name] = ("time", column[last], {"units": unit, "long_name": meaning})
     flags = {"flag_values": list(range(len(STATES))), "flag_meanings": " ".join(STATES)}
     variables["state"] = ("time", samples.state[last].astype(np.int8), {"long_name": "contact from then on", **flags})
     rows = [(event.time, *event.position, event.speed, event.load) for event in events]
@@ -154,7 +174,8 @@ def dataset_of(samples: Samples, events: Sequence[Event], **attributes: Any) -> 
 def table_of(samples: Samples, **attributes: Any) -> pandas.DataFrame:
     """The table of samples at ascending times, the last of those at a time; units are in its `attrs`."""
     dataset = dataset_of(samples, ())
-    table = dataset[[*COLUMNS, "state"]].to_dataframe()
+    columns = {name: unit for name, (unit, _) in (COLUMNS | FACE_COLUMNS).items() if name in dataset}
+    table = dataset[[*columns, "state"]].to_dataframe()
     table["state"] = [STATES[state] for state in table["state"]]
-    table.attrs = {"units": {"time": "s"} | {name: unit for name, (unit, _) in COLUMNS.items()}, **attributes}
+    table.attrs = {"units": {"time": "s"} | columns, **attributes}
     return table

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from particle.body import Body
+from particle.body import Body, Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
@@ -119,18 +119,14 @@ def simulate(
     wrong += faults(surface, duration, gravity, tolerance, after_detachment)
     if after_tipping not in ("stop", "ignore"):
         wrong.append(f"Input after_tipping of simulate must be 'stop' or 'ignore'; got {after_tipping!r}")
-    if not rim_gap(surface.record, *map(float, part.position)) >= 0:
-        wrong.append(f"Input position of {type(part).__name__} must lie on the plate; got {tuple(part.position)!r} m")
+    wrong += part_faults(surface, part, type(part).__name__)
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
-    elif surface.turns:
-        wrong.append("Input part of simulate must be a Body on a base that turns; got a Micropart")
     if wrong:
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
     if scheme == "events":
-        face = part.face(_points(tolerance), after_tipping == "stop") if isinstance(part, Body) else None
-        found = find_path(surface, request, tolerance, stop_flag(), face)
+        found = find_path(surface, request, tolerance, stop_flag(), face_of(part, tolerance, after_tipping == "stop"))
         if found is None:
             raise Stopped
         return found
@@ -139,9 +135,21 @@ def simulate(
     return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MAX_ROWS))
 
 
-def _points(tolerance: float) -> int:
-    """Points a side at which the surface under a face is looked at."""
-    return 3 if tolerance > 1e-8 else (4 if tolerance > 1e-10 else 5)
+def face_of(part: Micropart | Body, tolerance: float, tips: bool = True) -> Face | None:
+    """The face of a part that has one: more points for the surface under it at a tighter tolerance."""
+    if not isinstance(part, Body):
+        return None
+    return part.face(3 if tolerance > 1e-8 else (4 if tolerance > 1e-10 else 5), tips)
+
+
+def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list[str]:
+    """What is wrong with where a part starts, and on which surface."""
+    wrong = []
+    if not rim_gap(surface.record, *map(float, part.position)) >= 0:
+        wrong.append(f"Input position of {of} must lie on the plate; got {tuple(part.position)!r} m")
+    if surface.turns and not isinstance(part, Body):
+        wrong.append(f"Input {of} must be a Body on a base that turns; got a Micropart")
+    return wrong
 
 
 def _face_faults(scheme: str, after_detachment: str) -> list[str]:
@@ -205,7 +213,7 @@ def new_request(
         force=force,
         flies=flies,
         jumps=jumps,
-        centre_height=float(part.centre_height),
+        centre_height=float(part.centre_height or 0.0),
         bridged=(0.0, 0.0)
         if bends or jumps
         else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
@@ -219,13 +227,15 @@ def _start(part: Micropart | Body) -> FloatArray:
     return np.array([*part.position, *part.velocity, *np.zeros(4)], dtype=float)
 
 
-def part_record(surface: SurfaceMotion, part: Micropart | Body, friction: Contact, gravity: float | Sequence[float]) -> Part:
+def part_record(
+    surface: SurfaceMotion, part: Micropart | Body, friction: Contact, gravity: float | Sequence[float]
+) -> Part:
     """The part's record for the kernels: forces, friction law, and heights of contact and centre over the mid-plane."""
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     contact = centre = 0.0
     if surface.tilts or isinstance(part, Body):  # on a surface that stays level all heights move alike
-        contact, centre = surface.half_thickness, surface.half_thickness + part.centre_height
+        contact, centre = surface.half_thickness, surface.half_thickness + (part.centre_height or 0.0)
     forces = float(part.mass), -float(z), float(x), float(y), float(part.squeeze)
     return Part(*forces, friction.law, float(contact), float(centre))
 

@@ -80,7 +80,9 @@ class Trajectory:
     contact: Callable[[NDArray[Any]], NDArray[Any]]  # rows of `ContactState` at rows
     heading: FloatArray | None = None  # (n,) rad, of a part with a face, as are these
     spin: FloatArray | None = None  # (n,) rad/s
-    pressure_margin: FloatArray | None = None  # (n,) the least pressure on the face over the mean; below 0 an edge lifts
+    pressure_margin: FloatArray | None = (
+        None  # (n,) the least pressure on the face over the mean; below 0 an edge lifts
+    )
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
@@ -140,7 +142,7 @@ class Trajectory:
         ValueError
             A time is nan.
         """
-        return samples_of(self._rows_at(times, "at"))
+        return samples_of(self._rows_at(times, "at"), self.heading is not None)
 
     def contact_at(self, times: ArrayLike, friction: RoughContact | None = None) -> ContactSamples:
         """Contact and centre of mass in space at times, and the forces on the part there.
@@ -177,7 +179,8 @@ class Trajectory:
         -------
         dataset : xarray.Dataset
             Over `time`: x, y, z, vx, vy, vz, normal_force, friction_force and state; over `event`: event_time,
-            event_kind, event_x, event_y, event_speed and event_load. All have their units as attributes.
+            event_kind, event_x, event_y, event_speed and event_load; of a part with a face also heading, spin and
+            pressure_margin. All have their units as attributes.
 
         Raises
         ------
@@ -197,7 +200,7 @@ class Trajectory:
         Returns
         -------
         table : pandas.DataFrame
-            x, y, z, vx, vy, vz, normal_force, friction_force, and state in words.
+            x, y, z, vx, vy, vz, normal_force, friction_force, state in words, and what a face has besides.
 
         Raises
         ------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -188,7 +189,8 @@ def samples_of(run: SavedRun) -> Samples:
         run.state,
     )
     _, chosen = np.unique(np.concatenate([run.rows.time, steps.time]), return_index=True)
-    known = Samples(*(np.concatenate(pair)[chosen] for pair in zip(run.rows, steps, strict=True)))
+    pairs: Any = ((ours, theirs) for ours, theirs in zip(run.rows, steps, strict=True) if theirs is not None)
+    known = Samples(*(np.concatenate(pair)[chosen] for pair in pairs))
     places = np.arange((len(known.time) - 1) * BETWEEN + 1) / BETWEEN
     before = places.astype(np.int64)
     time = np.interp(places, np.arange(len(known.time)), known.time)

@@ -21,7 +21,6 @@ from coupling.progress import ProgressCallback, no_progress
 from coupling.results.csv_file import columns_of, is_trajectory, write_columns
 from coupling.results.saved import OF_PART, SavedRun
 from coupling.results.vtkhdf import GZIP, StepsFile, part_file, plate_file
-from particle import Samples
 
 FORMATS = ("pvd", "xdmf", "vtkhdf", "csv")
 VERTEX = np.zeros((1, 1), np.int64)
@@ -64,7 +63,7 @@ def export_run(
             free = f"a folder in which {path.name} is free or a trajectory"
             raise ValueError(f"Input output must be {free}; got {folder}")
         last = np.append(np.diff(saved.rows.time) > 0, True)  # each time once, at an event with the values from then on
-        return (write_columns(columns_of(Samples(*(column[last] for column in saved.rows))), path),)
+        return (write_columns(columns_of(saved.rows.chosen(last)), path),)
     write = write_pvd if form == "pvd" else write_xdmf
     name = saved.name if saved.complete else f"{saved.name}.partial"  # as nothing in these files says so
     return (

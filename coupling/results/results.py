@@ -166,7 +166,7 @@ def _arrays(
     return {
         "case": {"json": np.frombuffer(record.text.encode(), np.uint8)},
         "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
-        "rows": {key: getattr(trajectory, key) for key in Samples._fields},
+        "rows": {key: rows for key in Samples._fields if (rows := getattr(trajectory, key)) is not None},
         "events": events,
         "margins": margins._asdict(),
     }

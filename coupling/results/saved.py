@@ -192,7 +192,7 @@ def _surface(plate: h5py.File) -> dict[str, Any]:
 def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: int) -> SavedRun:
     """What both files hold, with their first k steps."""
     ours, fields, points = part["active_surface"], part["VTKHDF/PointData"], surface["points"]
-    rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
+    rows = Samples(**{name: rows[()] for name, rows in ours["rows"].items() if name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
     end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())

@@ -8,18 +8,14 @@ linear in P, so their derivatives by x, y, theta and t are the same averages of 
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.body.face import Face
-from particle.drives import ORDER, evaluate_piece
 from particle.jit import device_no_arrays
 from particle.surface import (
-    NOWHERE,
     UNBUILT,
-    Frame,
     Jet,
     LocalSurface,
     Surface,
@@ -30,14 +26,13 @@ from particle.surface import (
     new_local,
     plane_jet,
     prepare,
-    rim_gap,
     set_time,
     within_cell,
 )
 from particle.types import FloatArray, IntArray
 
-# Rows of averages: P and its derivatives; `o` is that by theta, along z x R rho.
-AT, T, TT, X, Y, O, XT, YT, OT, XX, XY, YY, XO, YO, OO = range(15)
+# Rows of averages: P and its derivatives; `BY` is that by theta, along z x R rho.
+AT, T, TT, X, Y, BY, XT, YT, BY_T, XX, XY, YY, X_BY, Y_BY, BY_BY = range(15)
 ROWS: Final = 15
 PLACE = 9  # columns: P_0, a_1 and a_2, each along x, y and z
 
@@ -45,7 +40,8 @@ PLACE = 9  # columns: P_0, a_1 and a_2, each along x, y and z
 def new_locals(surface: Surface, count: int) -> LocalSurface:
     """Scratch memory for so many cells: that of `new_local`, with an axis in front."""
     one = new_local(surface)
-    return LocalSurface(one.frame.repeat(count), *(np.stack([array] * count) for array in one[1:]))
+    stacked: Any = (np.stack([array] * count) for array in one[1:])
+    return LocalSurface(one.frame.repeat(count), *stacked)
 
 
 def prepare_locals(surface: Surface, locals_: LocalSurface) -> None:
@@ -73,8 +69,16 @@ def local_of(locals_: LocalSurface, k: int) -> LocalSurface:
 
 @device_no_arrays
 def enter_all(
-    surface: Surface, locals_: LocalSurface, slots: IntArray, face: Face, x: float, y: float, heading: float,
-    time: float, end: float, bridged: tuple[float, float],
+    surface: Surface,
+    locals_: LocalSurface,
+    slots: IntArray,
+    face: Face,
+    x: float,
+    y: float,
+    heading: float,
+    time: float,
+    end: float,
+    bridged: tuple[float, float],
 ) -> tuple[int, float]:
     """Prepare for a face at (x, y) [m] from `time` [s] on: a cell, NOWHERE or UNBUILT; when [s] the first span ends.
 
@@ -125,8 +129,8 @@ def fill_averages(
     # Of (X + R rho, 0).
     out[AT, 0], out[AT, 1], out[AT, 3], out[AT, 4], out[AT, 6], out[AT, 7] = x, y, cosine, sine, -sine, cosine
     out[X, 0] = out[Y, 1] = 1.0
-    out[O, 3], out[O, 4], out[O, 6], out[O, 7] = -sine, cosine, -cosine, -sine
-    out[OO, 3], out[OO, 4], out[OO, 6], out[OO, 7] = -cosine, -sine, sine, -cosine
+    out[BY, 3], out[BY, 4], out[BY, 6], out[BY, 7] = -sine, cosine, -cosine, -sine
+    out[BY_BY, 3], out[BY_BY, 4], out[BY_BY, 6], out[BY_BY, 7] = -cosine, -sine, sine, -cosine
     stretches = locals_.frame[0].in_plane > 0
     for k in range(len(face.places)):
         if slots[k] == k:
@@ -145,9 +149,7 @@ def fill_averages(
 
 
 @device_no_arrays
-def _add(
-    out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: float, r_y: float, f: Jet
-) -> None:
+def _add(out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: float, r_y: float, f: Jet) -> None:
     """Add a point's share, along x, y or z, with the weights of P_0, a_1 and a_2."""
     turn_x, turn_y = -r_y * f.xx + r_x * f.xy, -r_y * f.xy + r_x * f.yy
     values = (

@@ -22,7 +22,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from particle.body.averages import AT, OO, OT, PLACE, ROWS, T, TT, XO, XT, XX, XY, YO, YT, YY, O, X, Y
+from particle.body.averages import AT, BY, BY_BY, BY_T, PLACE, ROWS, TT, X_BY, XT, XX, XY, Y_BY, YT, YY, T, X, Y
 from particle.body.face import Face
 from particle.body.wrench import fill_wrenches
 from particle.events.mechanics import Part
@@ -113,7 +113,7 @@ def fill_pose(part: Part, base: Base, b: Balance) -> bool:
         b.axes[1, i] = y[3 + i] * b.unstretch[0, 1] + y[6 + i] * b.unstretch[1, 1]
         j, k = (i + 1) % 3, (i + 2) % 3
         b.axes[2, i] = (y[3 + j] * y[6 + k] - y[3 + k] * y[6 + j]) / root
-    for column, row in ((0, X), (1, Y), (2, O)):
+    for column, row in ((0, X), (1, Y), (2, BY)):
         _fill_twist(b, b.averages[row])
         t = b.twist
         b.planar[0, column], b.planar[1, column] = t[0] + part.contact * t[4], t[1] - part.contact * t[3]
@@ -177,15 +177,15 @@ def _fill_twist(b: Balance, rate: FloatArray) -> None:
 @device_no_arrays
 def fill_forces(part: Part, face: Face, base: Base, v_x: float, v_y: float, omega: float, b: Balance) -> None:
     """The contact's wrench, its change with u, and the face's slip, at the rates (X', Y', theta')."""
-    a, mass, z, h = b.averages, part.mass, part.centre, part.centre - part.contact
+    a, z, h = b.averages, part.centre, part.centre - part.contact
     for i in range(3):
         b.slip[i] = b.planar[i, 0] * v_x + b.planar[i, 1] * v_y + b.planar[i, 2] * omega
     for j in range(PLACE):
-        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[O, j] * omega
+        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[BY, j] * omega
         bend = a[XX, j] * v_x * v_x + 2 * a[XY, j] * v_x * v_y + a[YY, j] * v_y * v_y
-        bend += 2 * omega * (a[XO, j] * v_x + a[YO, j] * v_y) + a[OO, j] * omega * omega
-        b.second[j] = a[TT, j] + 2 * (a[XT, j] * v_x + a[YT, j] * v_y + a[OT, j] * omega) + bend
-    for column, row in ((1, X), (2, Y), (3, O)):
+        bend += 2 * omega * (a[X_BY, j] * v_x + a[Y_BY, j] * v_y) + a[BY_BY, j] * omega * omega
+        b.second[j] = a[TT, j] + 2 * (a[XT, j] * v_x + a[YT, j] * v_y + a[BY_T, j] * omega) + bend
+    for column, row in ((1, X), (2, Y), (3, BY)):
         _fill_twist(b, a[row])
         t = b.twist
         _set_forces(part, face, t[0] + z * t[4], t[1] - z * t[3], t[2], t[3], t[4], t[5], h, b, column)
@@ -229,10 +229,10 @@ def fill_forces(part: Part, face: Face, base: Base, v_x: float, v_y: float, omeg
     a_3 += e[2, 0] * f_x + e[2, 1] * f_y + e[2, 2] * part.gravity
     _set_forces(part, face, a_1, a_2, a_3, r_1, r_2, r_3, h, b, 0)
     # Omega x I Omega.
-    i = face.inertia
-    l_1 = i[0, 0] * o_1 + i[0, 1] * o_2 + i[0, 2] * o_3
-    l_2 = i[1, 0] * o_1 + i[1, 1] * o_2 + i[1, 2] * o_3
-    l_3 = i[2, 0] * o_1 + i[2, 1] * o_2 + i[2, 2] * o_3
+    m = face.inertia
+    l_1 = m[0, 0] * o_1 + m[0, 1] * o_2 + m[0, 2] * o_3
+    l_2 = m[1, 0] * o_1 + m[1, 1] * o_2 + m[1, 2] * o_3
+    l_3 = m[2, 0] * o_1 + m[2, 1] * o_2 + m[2, 2] * o_3
     b.forces[4, 0] += o_2 * l_3 - o_3 * l_2
     b.forces[5, 0] += o_3 * l_1 - o_1 * l_3
     b.forces[2, 0] += o_1 * l_2 - o_2 * l_1
@@ -240,8 +240,17 @@ def fill_forces(part: Part, face: Face, base: Base, v_x: float, v_y: float, omeg
 
 @device_no_arrays
 def _set_forces(
-    part: Part, face: Face, a_1: float, a_2: float, a_3: float, r_1: float, r_2: float, r_3: float, h: float,
-    b: Balance, column: int,
+    part: Part,
+    face: Face,
+    a_1: float,
+    a_2: float,
+    a_3: float,
+    r_1: float,
+    r_2: float,
+    r_3: float,
+    h: float,
+    b: Balance,
+    column: int,
 ) -> None:
     """m a and I r about the face's origin, h below the centre of mass, into a column of b.forces."""
     i, mass, f = face.inertia, part.mass, b.forces
@@ -338,11 +347,13 @@ def powers(part: Part, b: Balance) -> tuple[float, float]:
 
 
 @device_no_arrays
-def energy_of(part: Part, face: Face, base: Base, v_x: float, v_y: float, omega: float, b: Balance) -> tuple[float, float]:
+def energy_of(
+    part: Part, face: Face, base: Base, v_x: float, v_y: float, omega: float, b: Balance
+) -> tuple[float, float]:
     """Kinetic and potential energy [J] at the rates (X', Y', theta'), from b.averages and b.axes."""
     a, e, z, i = b.averages, b.axes, part.centre, face.inertia
     for j in range(PLACE):
-        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[O, j] * omega
+        b.rate[j] = a[T, j] + a[X, j] * v_x + a[Y, j] * v_y + a[BY, j] * omega
     _fill_twist(b, b.rate)
     t = b.twist
     c_x, c_y, c_z = a[AT, 0] + z * e[2, 0], a[AT, 1] + z * e[2, 1], a[AT, 2] + z * e[2, 2]

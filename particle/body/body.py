@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -53,7 +51,10 @@ class Body:
             [
                 (isinstance(self.footprint, Footprint), "footprint", "a Footprint", self.footprint),
                 (positive(self.thickness), "thickness", "positive, in m", self.thickness),
-                *((finite(value), name, f"a finite number, in {unit}", value) for name, (value, unit) in numbers.items()),
+                *(
+                    (finite(value), name, f"a finite number, in {unit}", value)
+                    for name, (value, unit) in numbers.items()
+                ),
                 (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
                 (self.pressure in PRESSURES, "pressure", "'linear' or 'uniform'", self.pressure),
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
@@ -70,9 +71,8 @@ class Body:
         refuse("Body", [(not_negative(height), "centre_height", "0 or a positive length in m", height)])
         given = _block(self.footprint, self.thickness, mass) if self.inertia is None else _matrix(self.inertia)
         wanted = "three positive moments or a symmetric, positive 3 x 3 matrix, in kg m^2"
-        good = given is not None and np.allclose(given, given.T, rtol=1e-9) and (np.linalg.eigvalsh(given) > 0).all()
+        good = np.allclose(given, given.T, rtol=1e-9) and (np.linalg.eigvalsh(given) > 0).all()
         refuse("Body", [(bool(good), "inertia", wanted, self.inertia)])
-        given = (given + given.T) / 2
         found = {"mass": mass, "density": mass / volume, "centre_height": float(height), "inertia": given}
         for name, value in found.items():
             object.__setattr__(self, name, value)
@@ -84,10 +84,20 @@ class Body:
         far, far_weights = footprint.rule(FAR_POINTS)
         fine, fine_weights = footprint.rule(32)
         return Face(
-            *(places, weights, np.linalg.inv(footprint.second_moments), footprint.corners, footprint.corners),
-            *(float(footprint.radius), footprint.area, footprint.reach, float(fine_weights @ np.hypot(*fine.T))),
-            *(far, far_weights * footprint.area, np.ascontiguousarray(self.inertia, dtype=float)),
-            *(self.pressure == "linear", tips),
+            places=places,
+            weights=weights,
+            unmoments=np.asarray(np.linalg.inv(footprint.second_moments), dtype=float),
+            corners=footprint.corners,
+            hull=footprint.hull,
+            radius=float(footprint.radius),
+            area=footprint.area,
+            reach=footprint.reach,
+            arm=float(fine_weights @ np.hypot(*fine.T)),
+            far=far,
+            far_weights=far_weights * footprint.area,
+            inertia=np.array(self.inertia, dtype=float),
+            linear=self.pressure == "linear",
+            tips=tips,
         )
 
 
@@ -99,14 +109,14 @@ def _is_pair(value: Any) -> bool:
     return np.shape(value) == (2,) and all(finite(part) for part in value)
 
 
-def _matrix(inertia: ArrayLike) -> FloatArray | None:
-    """The matrix of three moments, or of a matrix; None: it is neither."""
+def _matrix(inertia: ArrayLike) -> FloatArray:
+    """The matrix of three moments, or of a matrix; of zeros where it is neither."""
     try:
         values = np.array(inertia, dtype=float)
     except (TypeError, ValueError):
-        return None
+        return np.zeros((3, 3))
     values = np.diag(values) if values.shape == (3,) else values
-    return values if values.shape == (3, 3) and np.isfinite(values).all() else None
+    return values if values.shape == (3, 3) and np.isfinite(values).all() else np.zeros((3, 3))
 
 
 def _block(footprint: Footprint, thickness: float, mass: float) -> FloatArray:

@@ -47,7 +47,9 @@ def needed(b: Balance, out: FloatArray) -> None:
 
 
 @device_no_arrays
-def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, static: bool, b: Balance, out: FloatArray) -> None:
+def fill_friction(
+    part: Part, face: Face, s_1: float, s_2: float, s_3: float, static: bool, b: Balance, out: FloatArray
+) -> None:
     """The wrench of friction against the slip s under the load b.load into `out` (3,)."""
     fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
     ratio = (part.law.static_ratio if static else 1.0) / face.area
@@ -152,7 +154,7 @@ def slip_rate(part: Part, face: Face, b: Balance, s: Search) -> float:
 
     Newton's method in r and the two directions across e.
     """
-    e, p, c = s.e, s.plane, face.arm
+    e, p = s.e, s.plane
     if not _acceleration(part, face, e[0], e[1], e[2], b, s):
         return math.nan
     rate = _dot(s.friction, e)

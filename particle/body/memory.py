@@ -57,6 +57,13 @@ def new_memory(surface: Surface, face: Face, stop: IntArray) -> Memory:
     local = new_locals(surface, len(face.places))
     prepare_locals(surface, local)
     return Memory(
-        *(local, np.zeros(len(face.places), dtype=np.int64), new_records(Balance), new_records(Search)),
-        *(new_records(Step), new_records(Now), new_records(Counts), new_records(Row), stop),
+        local=local,
+        slots=np.zeros(len(face.places), dtype=np.int64),
+        balance=new_records(Balance),
+        search=new_records(Search),
+        step=new_records(Step),
+        now=new_records(Now),
+        counts=new_records(Counts),
+        row=new_records(Row),
+        stop=stop,
     )

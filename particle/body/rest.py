@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from particle.body.balance import least_pressure
 from particle.body.face import Face
 from particle.body.limit import gauge, needed
 from particle.body.memory import Memory
@@ -18,7 +19,6 @@ from particle.events.mechanics import Part
 from particle.events.request import Request
 from particle.friction import friction_limit, friction_slope
 from particle.jit import device_no_arrays
-from particle.body.balance import least_pressure
 
 PER_STROKE, LEAST, MOST = 24, 4, 400  # moments looked at in the shortest stroke, and in a span
 SAFE = 0.5  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
@@ -29,7 +29,7 @@ HALVINGS = 60
 
 @device_no_arrays
 def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
-    """Above 0 where a part at rest in memory.step[0].state does not stay at a time [s]: the gauge less 1, or minus the margin.
+    """Above 0 where a part at rest does not stay at a time [s]: the gauge less 1, or minus the contact's margin.
 
     Far below the limit an upper bound of the gauge takes its place.
     """
@@ -53,7 +53,7 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
 
 @device_no_arrays
 def leaves_rest(request: Request, face: Face, memory: Memory, end: float) -> float:
-    """When [s] the part in memory.step[0].state first leaves its rest, from now.time on and before `end` [s]; inf: not."""
+    """When [s] a part at rest first leaves its rest, from now.time on and before `end` [s]; inf: it does not."""
     part, begin = request.part, memory.now[0].time
     if end - begin <= 0.0:
         return math.inf

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 
 from particle.body.averages import within_cells
-from particle.body.balance import find_rates, powers, set_load, solve
+from particle.body.balance import energy_of, find_rates, powers, solve
 from particle.body.collocation import AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
 from particle.body.face import Face
 from particle.body.limit import gauge, needed, slip_rate
 from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
 from particle.body.state import base_at, contact_margin, end_reason, rim_margin, settle, slip_speed
-from particle.body.balance import energy_of
-from particle.events.mechanics import Now, Part
+from particle.events.mechanics import Now
 from particle.events.request import Request
 from particle.jit import device_no_arrays
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface
-from particle.types import FloatArray
 
 FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
@@ -95,7 +93,11 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
     now.h = remaining if now.h >= 0.9 * remaining else now.h
     if slowing > 0.0:
         until = speed / slowing
-        if until <= remaining and until < STOPPED[0] * request.stroke_time and speed * until < STOPPED[1] * request.tolerance:
+        if (
+            until <= remaining
+            and until < STOPPED[0] * request.stroke_time
+            and speed * until < STOPPED[1] * request.tolerance
+        ):
             return _stop(request, face, memory, until)
         now.h = min(now.h, BEFORE_STOP * until)
     while True:
@@ -119,12 +121,12 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
             now.h *= 0.5
             continue
         break
-    last, h = memory.step[0].stages[STAGES - 1], now.h
+    step, h = memory.step[0], now.h
     for i in range(STATE):
-        state[i] = memory.step[0].end[i]
+        state[i] = step.end[i]
     for i in range(3):
-        change = memory.step[0].rates[STAGES - 1, i] - memory.step[0].rates[STAGES - 2, i]
-        memory.step[0].lead[0, i], memory.step[0].lead[1, i] = memory.step[0].rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
+        change = step.rates[STAGES - 1, i] - step.rates[STAGES - 2, i]
+        step.lead[0, i], step.lead[1, i] = step.rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
     now.time = now.span_end if h == remaining else now.time + h
     now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
     return NO_EVENT
@@ -276,7 +278,6 @@ def _error(request: Request, face: Face, memory: Memory, h: float) -> float:
     An error of a rate counts as what it moves the part by in the shortest stroke.
     """
     state, stages, m = memory.step[0].state, memory.step[0].stages, memory.balance[0].matrix
-    part = request.part
     stiff = h * stages[0, LOSS] > 0.0 and memory.step[0].turns[0, 0, 0] != 0.0
     for i in range(3):
         error = AT_START * memory.step[0].lead[0, i]

@@ -21,7 +21,7 @@ from particle.drives import evaluate_piece
 from particle.events.mechanics import Part
 from particle.events.record import Row
 from particle.jit import device_no_arrays
-from particle.modes import Mode, Verdict
+from particle.modes import Verdict
 from particle.surface import LocalSurface, Surface, rim_gap
 from particle.types import FloatArray
 

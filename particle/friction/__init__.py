@@ -1,3 +1,10 @@
 """Friction laws: the largest tangential force that a contact transmits under a net normal force."""
 
-from particle.friction.contact import Contact, FrictionLaw, ScaledFriction, friction_limit, friction_limits, friction_slope
+from particle.friction.contact import (
+    Contact,
+    FrictionLaw,
+    ScaledFriction,
+    friction_limit,
+    friction_limits,
+    friction_slope,
+)

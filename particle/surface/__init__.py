@@ -1,6 +1,6 @@
 """The moving surface: its cells, and the polynomial that a part sees of it."""
 
-from particle.surface.at_point import SurfacePoint, motion_at, height_here, plane_jet, point_of, set_time, surface_at
+from particle.surface.at_point import SurfacePoint, height_here, motion_at, plane_jet, point_of, set_time, surface_at
 from particle.surface.bridge import allow_bridges
 from particle.surface.cells import (
     NO_PLANE,
@@ -14,8 +14,8 @@ from particle.surface.cells import (
     cells_of,
     columns_of,
 )
-from particle.surface.local import Frame, LocalSurface, cell_at, gap_at, missing_place, new_local, prepare, within_cell
 from particle.surface.jet import Jet
+from particle.surface.local import Frame, LocalSurface, cell_at, gap_at, missing_place, new_local, prepare, within_cell
 from particle.surface.moving_surface import SurfaceMotion
 from particle.surface.record import BASE, Surface
 from particle.surface.rim import ROUNDING, first_beyond, rim_gap

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from particle.drives import DriveTable
 from particle.surface.cells import Cells
+from particle.types import FloatArray
 
 BASE = 3  # drives of a base that moves: along x, along y, and its turn about the origin
-from particle.types import FloatArray
 
 
 class Surface(NamedTuple):
