@@ -31,7 +31,7 @@ CONTENTS = {  # the pages below a page, by caption
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture", "contributing", "changes"],
     },
-    "theory": {"": ["plate", "surface", "motion", "contact", "large-deflection", "inertia"]},
+    "theory": {"": ["plate", "surface", "motion", "contact", "large-deflection", "inertia", "face"]},
     "api/index": {"": PACKAGES},
 }
 NUMBERED = {"theory"}  # whose pages have the numbers that their equations begin with
