@@ -18,7 +18,7 @@ from particle.body.state import contact_margin, settle
 from particle.events.mechanics import Part
 from particle.events.request import Request
 from particle.friction import friction_limit, friction_slope
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, inlined
 
 PER_STROKE, LEAST, MOST = 24, 4, 400  # moments looked at in the shortest stroke, and in a span
 SAFE = 0.5  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
@@ -51,7 +51,7 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
     return max(bound, -margin)
 
 
-@device_no_arrays
+@inlined
 def leaves_rest(request: Request, face: Face, memory: Memory, end: float) -> float:
     """When [s] a part at rest first leaves its rest, from now.time on and before `end` [s]; inf: it does not."""
     part, begin = request.part, memory.now[0].time
@@ -62,22 +62,23 @@ def leaves_rest(request: Request, face: Face, memory: Memory, end: float) -> flo
     before, value = math.inf, excess(part, face, memory, begin)
     if value > 0.0:
         return begin
+    low = high = math.inf
     for k in range(1, count + 1):
         at = end if k == count else begin + k * width
         after = excess(part, face, memory, at)
         if math.isnan(after):
             return at
         if k > 1 and value > before and value > after and value > -NEAR:
-            top = _peak(part, face, memory, at - 2 * width, at)
-            if top < math.inf:
-                return _root(part, face, memory, at - 2 * width, top)
-        if after > 0.0:
-            return _root(part, face, memory, at - width, at)
+            low, high = at - 2 * width, _peak(part, face, memory, at - 2 * width, at)
+        if high == math.inf and after > 0.0:
+            low, high = at - width, at
+        if high < math.inf:
+            break
         before, value = value, after
-    return math.inf
+    return _root(part, face, memory, low, high) if high < math.inf else math.inf
 
 
-@device_no_arrays
+@inlined
 def _peak(part: Part, face: Face, memory: Memory, low: float, high: float) -> float:
     """A moment above the limit around a maximum between two [s]; inf: there is none. By the golden section."""
     ratio = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -99,7 +100,7 @@ def _peak(part: Part, face: Face, memory: Memory, low: float, high: float) -> fl
     return math.inf
 
 
-@device_no_arrays
+@inlined
 def _root(part: Part, face: Face, memory: Memory, low: float, high: float) -> float:
     """The moment [s] between two at which the excess first is above 0, just beyond it: secants (Illinois), halving."""
     below, above = excess(part, face, memory, low), excess(part, face, memory, high)

@@ -13,7 +13,7 @@ from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Mem
 from particle.body.state import base_at, contact_margin, end_reason, rim_margin, settle, slip_speed
 from particle.events.mechanics import Now
 from particle.events.request import Request
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface
 
@@ -26,7 +26,7 @@ PASSES = 12
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-13
 
 
-@device_no_arrays
+@inlined
 def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     """Move a resting part that friction no longer holds over the first moment of its slip; False: it stays after all.
 
@@ -75,7 +75,7 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     return True
 
 
-@device_no_arrays
+@inlined
 def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
     """Move the part on by one step of about now.h [s], or to its stop: STOPS, REVERSES or NO_EVENT."""
     now: Now = memory.now[0]
@@ -132,7 +132,7 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
     return NO_EVENT
 
 
-@device_no_arrays
+@inlined
 def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
     """Move a part that stops after `until` [s], with forces as they are, to its stop."""
     now: Now = memory.now[0]
@@ -150,7 +150,7 @@ def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
     return EventKind.REVERSES.value if gauge(part, face, b, memory.search[0]) > 1.0 + CLOSE else EventKind.STOPS.value
 
 
-@device_no_arrays
+@inlined
 def _end_contact(surface: Surface, request: Request, face: Face, memory: Memory) -> None:
     """Move the part to where its contact ends within the step tried, just beyond it, by halving the step."""
     now: Now = memory.now[0]
@@ -241,7 +241,7 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
     return True
 
 
-@device_no_arrays
+@inlined
 def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
     """By how much a stage's acceleration changes with its rates as friction turns, into memory.step[0].turns[k]."""
     b = memory.balance[0]
@@ -256,7 +256,7 @@ def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
     return True
 
 
-@device_no_arrays
+@inlined
 def _newton(memory: Memory, h: float) -> bool:
     """Turn the stages' residuals memory.step[0].steps into Newton's steps."""
     m = memory.step[0].system
@@ -271,7 +271,7 @@ def _newton(memory: Memory, h: float) -> bool:
     return solve(m, memory.step[0].steps)
 
 
-@device_no_arrays
+@inlined
 def _error(request: Request, face: Face, memory: Memory, h: float) -> float:
     """The step's error as a distance [m]; a turn counts at the mean distance from the face's origin.
 
