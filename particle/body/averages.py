@@ -27,7 +27,7 @@ from particle.surface import (
     plane_jet,
     prepare,
     set_time,
-    within_cell,
+    within_frame,
 )
 from particle.types import FloatArray, IntArray
 
@@ -112,7 +112,7 @@ def within_cells(locals_: LocalSurface, slots: IntArray, face: Face, x: float, y
     cosine, sine = math.cos(heading), math.sin(heading)
     for k in range(len(face.places)):
         p, q = face.places[k, 0], face.places[k, 1]
-        if not within_cell(local_of(locals_, slots[k]), x + cosine * p - sine * q, y + sine * p + cosine * q):
+        if not within_frame(locals_.frame[slots[k]], x + cosine * p - sine * q, y + sine * p + cosine * q):
             return False
     return True
 
@@ -135,8 +135,10 @@ def fill_averages(
     for k in range(len(face.places)):
         if slots[k] == k:
             set_time(local_of(locals_, k), time)
+    local, last = local_of(locals_, 0), 0
     for k in range(len(face.places)):
-        local = local_of(locals_, slots[k])
+        if slots[k] != last:
+            local, last = local_of(locals_, slots[k]), slots[k]
         rho_1, rho_2 = face.places[k, 0], face.places[k, 1]
         r_x, r_y = cosine * rho_1 - sine * rho_2, sine * rho_1 + cosine * rho_2
         weight = face.weights[k]
@@ -152,11 +154,26 @@ def fill_averages(
 def _add(out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: float, r_y: float, f: Jet) -> None:
     """Add a point's share, along x, y or z, with the weights of P_0, a_1 and a_2."""
     turn_x, turn_y = -r_y * f.xx + r_x * f.xy, -r_y * f.xy + r_x * f.yy
-    values = (
-        *(f.f, f.t, f.tt, f.x, f.y, -r_y * f.x + r_x * f.y, f.xt, f.yt, -r_y * f.xt + r_x * f.yt),
-        *(f.xx, f.xy, f.yy, turn_x, turn_y, -r_y * turn_x + r_x * turn_y - r_x * f.x - r_y * f.y),
-    )
-    for i in range(ROWS):
-        out[i, along] += w * values[i]
-        out[i, 3 + along] += w_1 * values[i]
-        out[i, 6 + along] += w_2 * values[i]
+    _put(out[AT], along, w, w_1, w_2, f.f)
+    _put(out[T], along, w, w_1, w_2, f.t)
+    _put(out[TT], along, w, w_1, w_2, f.tt)
+    _put(out[X], along, w, w_1, w_2, f.x)
+    _put(out[Y], along, w, w_1, w_2, f.y)
+    _put(out[BY], along, w, w_1, w_2, -r_y * f.x + r_x * f.y)
+    _put(out[XT], along, w, w_1, w_2, f.xt)
+    _put(out[YT], along, w, w_1, w_2, f.yt)
+    _put(out[BY_T], along, w, w_1, w_2, -r_y * f.xt + r_x * f.yt)
+    _put(out[XX], along, w, w_1, w_2, f.xx)
+    _put(out[XY], along, w, w_1, w_2, f.xy)
+    _put(out[YY], along, w, w_1, w_2, f.yy)
+    _put(out[X_BY], along, w, w_1, w_2, turn_x)
+    _put(out[Y_BY], along, w, w_1, w_2, turn_y)
+    _put(out[BY_BY], along, w, w_1, w_2, -r_y * turn_x + r_x * turn_y - r_x * f.x - r_y * f.y)
+
+
+@device_no_arrays
+def _put(row: FloatArray, along: int, w: float, w_1: float, w_2: float, value: float) -> None:
+    """Add a value to a row."""
+    row[along] += w * value
+    row[3 + along] += w_1 * value
+    row[6 + along] += w_2 * value

@@ -15,7 +15,7 @@ from particle.footprint import Footprint
 from particle.types import FloatArray
 
 PRESSURES = ("linear", "uniform")
-FAR_POINTS = 8  # of the rule for friction that hardly turns, a side
+FAR_POINTS = 6  # of the rule for friction that hardly turns, a side
 
 
 @dataclass(frozen=True, eq=False)

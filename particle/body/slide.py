@@ -203,7 +203,7 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
             )
             if h * stages[k, LOSS] > STIFF * part.mass * speed * speed:
                 stiff = True
-                if not _fill_turns(request, face, memory, k):
+                if turn < 2 and not _fill_turns(request, face, memory, k):
                     return False
         for k in range(STAGES):
             for i in range(3):

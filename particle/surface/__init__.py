@@ -15,7 +15,17 @@ from particle.surface.cells import (
     columns_of,
 )
 from particle.surface.jet import Jet
-from particle.surface.local import Frame, LocalSurface, cell_at, gap_at, missing_place, new_local, prepare, within_cell
+from particle.surface.local import (
+    Frame,
+    LocalSurface,
+    cell_at,
+    gap_at,
+    missing_place,
+    new_local,
+    prepare,
+    within_cell,
+    within_frame,
+)
 from particle.surface.moving_surface import SurfaceMotion
 from particle.surface.record import BASE, Surface
 from particle.surface.rim import ROUNDING, first_beyond, rim_gap

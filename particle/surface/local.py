@@ -150,7 +150,12 @@ def _interval(along: float, width: float, count: int) -> int:
 @device_no_arrays
 def within_cell(local: LocalSurface, x: float, y: float) -> bool:
     """Whether the cell's polynomial holds at a point [m]."""
-    f: Frame = local.frame[0]
+    return within_frame(local.frame[0], x, y)
+
+
+@device_no_arrays
+def within_frame(f: Frame, x: float, y: float) -> bool:
+    """As `within_cell`, by the frame alone."""
     return abs(x - f.x) <= f.overhang * f.half_x and abs(y - f.y) <= f.overhang * f.half_y
 
 
