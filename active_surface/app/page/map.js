@@ -6,7 +6,7 @@ const CLOSEST = 0.02; // of the plate, what is shown around a path at least
 const STEP = 0.01, FINE = 0.1; // of the window's width for an arrow key, and of that with Shift
 const HEIGHTS = 0; // the number of a trace
 const NOWHERE = { x: [], y: [] };
-let mapData = null, around = false, dragged = null, aiming = false, target = null, nodes = null, nodesOf = "";
+let mapData = null, around = false, dragged = null, aiming = false, target = null;
 let nowPath = null, savedPath = null;
 let onDrag = () => {}, onDrop = () => {}, onPick = () => {}, onTarget = () => {};
 
@@ -61,8 +61,8 @@ function drawHeights(step = shown) {
   element("shades").hidden = element("here").hidden = blank;
   if (blank) return;
   const ranges = mapAxes().map((axis) => axis.range), ratio = mapData.perSI / perMetre(units.length), [low, high] = surface.range;
-  if (nodesOf !== ranges.join()) { nodes = nodesIn(...ranges, ratio); nodesOf = ranges.join(); }
-  const z = heightsAt(step), [left, right] = ranges[0], [bottom, top] = ranges[1];
+  if (surface.frame !== ranges.join()) Object.assign(surface, { frame: ranges.join(), nodes: nodesIn(...ranges, ratio) });
+  const { nodes } = surface, z = heightsAt(step), [left, right] = ranges[0], [bottom, top] = ranges[1];
   const rows = Array.from({ length: NODES }, (_, row) => Array.from({ length: NODES }, (_, k) => nodes.on[row * NODES + k] ? valueAt(nodes, row * NODES + k, z) : null));
   element("shades-bar").style.background = `linear-gradient(to right, ${surface.colours.map(([at, colour]) => `${colour} ${100 * at}%`).join(", ")})`;
   element("shades-range").textContent = `height, ${said(low)} to ${said(high)} ${units.height}`;

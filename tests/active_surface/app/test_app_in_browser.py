@@ -119,6 +119,23 @@ def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
     wait(lambda: browser.execute_script(places) == began)
 
 
+MAPPED = """
+const [x, y] = mapAxes().map((axis) => axis.range), [{ z }] = element("map").data, heights = heightsAt(shown);
+const nodes = nodesIn(x, y, mapData.perSI / perMetre(units.length));
+return z.flat().every((height, k) => height === (nodes.on[k] ? valueAt(nodes, k, heights) : null));
+"""
+
+
+def test_on_another_mesh_the_map_has_the_heights_of_that(opened):
+    browser, _ = opened
+    assert browser.execute_script(MAPPED)
+    browser.execute_script(
+        "delete document.body.dataset.ready; change({ 'actuators.1.position.1': '40 um' }, true, performance.now())"
+    )
+    wait(lambda: browser.execute_script("return document.body.dataset.ready") == "run")
+    assert browser.execute_script(MAPPED)
+
+
 SHOWN = """
 const [axis] = arguments, [x, y] = mapAxes(), { style } = handleOf("start");
 const at = [x.p2l(Number.parseFloat(style.left)), y.p2l(Number.parseFloat(style.top))];
