@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self, TypeVar
 
 import numpy as np
@@ -57,20 +57,14 @@ def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: flo
 
     solve: takes the number of halvings.  gain: what a halving divides the error of w by, at least.
     """
-
-    def on_halved(times: int) -> Solution:
-        found = solve(times)
-        found.refine = lambda: on_halved(times + 1)
-        return found
-
-    solution = on_halved(0)
+    solution = _on_halved(solve, 0)
     if tolerance is None:
         return solution
     change, halvings = np.inf, 0
     least = tolerance + solution.rounding  # finer cells do not lessen rounding
     while 4 * solution.unknowns < MAX_UNKNOWNS and (not halvings or solution.error_estimate > least):
         halvings += 1
-        coarse, solution = solution, on_halved(halvings)
+        coarse, solution = solution, _on_halved(solve, halvings)
         last_change, change = change, solution.difference(coarse)
         solution.error_estimate = change * max(change / last_change, 1 / gain) + solution.rounding
         if change > last_change / 2:
@@ -78,6 +72,12 @@ def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: flo
             coarse.error_estimate, solution.error_estimate = (e + solution.rounding for e in (last_change, change))
             return coarse if last_change < change else solution
     return solution
+
+
+def _on_halved(solve: Callable[[int], Solution], times: int) -> Solution:
+    found = solve(times)
+    found.refine = partial(_on_halved, solve, times + 1)
+    return found
 
 
 class Deflection(Estimated):

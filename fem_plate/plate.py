@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -291,12 +292,12 @@ class Plate(GradedPlate):
         inertia = density * self.section.thickness
         if deflected is not None:
             return deflected.modes(count, points, actuator_stiffness, inertia)
+        return self._modes(points, actuator_stiffness, count, inertia, 0)
 
-        def solve(halvings: int) -> Modes:
-            held_plate = HeldPlate(self.model(points, halvings), points, self.section.rigidity, actuator_stiffness)
-            return modes.modes(held_plate, count, inertia, lambda: solve(halvings + 1))
-
-        return solve(0)
+    def _modes(self, points: FloatArray, stiffness: FloatArray, count: int, inertia: float, halvings: int) -> Modes:
+        held_plate = HeldPlate(self.model(points, halvings), points, self.section.rigidity, stiffness)
+        refine = partial(self._modes, points, stiffness, count, inertia, halvings + 1)
+        return modes.modes(held_plate, count, inertia, refine)
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""

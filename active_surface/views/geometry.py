@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.tri import Triangulation
+from matplotlib.tri import TrapezoidMapTriFinder, Triangulation
 from scipy.spatial import Delaunay, cKDTree
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
@@ -33,8 +33,7 @@ class Spots(NamedTuple):
 
 def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spots:
     """Places (q, 2) [m] on triangles (m, 3) of points (n, 2) [m]; one outside is on the plane of the one near it."""
-    mesh = Triangulation(*points.T, triangles)
-    triangle = mesh.get_trifinder()(*places.T)
+    triangle = _triangles_at(points, triangles, places)
     nearest = cKDTree(points[triangles].mean(axis=1)).query(places)[1]
     corners = triangles[np.where(triangle >= 0, triangle, nearest)]
     return Spots(corners, barycentric(points[corners], places))
@@ -55,7 +54,13 @@ def barycentric(corners: FloatArray, places: FloatArray) -> FloatArray:
 
 def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> BoolArray:
     """Which places (q, 2) [m] lie in the triangles."""
-    return np.asarray(Triangulation(*points.T, triangles).get_trifinder()(*places.T) >= 0)
+    return _triangles_at(points, triangles, places) >= 0
+
+
+def _triangles_at(points: FloatArray, triangles: IntArray, places: FloatArray) -> IntArray:
+    """The numbers (q,) of the triangles (m, 3) that places (q, 2) [m] lie in; -1: in none."""
+    # `get_trifinder` makes a reference cycle, whose megabytes stay until the garbage collector comes.
+    return np.asarray(TrapezoidMapTriFinder(Triangulation(*points.T, triangles))(*places.T))
 
 
 def coarse(points: FloatArray, triangles: IntArray, max_points: int) -> IntArray:

@@ -141,17 +141,18 @@ def _lines(points: FloatArray, triangles: IntArray, box: FloatArray) -> dict[str
     """Lines along x and y on the surface in a box (2, 2) [m], which show its form without colours."""
     low, high = box
     apart = float((high - low).max()) / LINES
-    pieces: list[FloatArray] = []
+    lines: list[FloatArray] = []
     for axis in (0, 1):
         count = max(int(np.ceil((high - low)[axis] / apart)), 1)
         for c in low[axis] + (np.arange(count) + 0.5) * (high - low)[axis] / count:
             line = np.empty((PER_LINE, 2))
             line[:, axis], line[:, 1 - axis] = c, np.linspace(low[1 - axis], high[1 - axis], PER_LINE)
-            on = inside(points, triangles, line)
-            breaks = np.flatnonzero(np.diff(on.astype(int))) + 1
-            pieces += [piece for piece, o in zip(np.split(line, breaks), np.split(on, breaks), strict=True) if o[0]]
-    ends = np.cumsum([len(piece) for piece in pieces])
-    return _spots(spots_of(points, triangles, np.concatenate([points[:0], *pieces]))) | {"ends": packed(ends, "u4")}
+            lines.append(line)
+    places = np.concatenate(lines)
+    on = inside(points, triangles, places)
+    last = on & ~np.roll(on, -1)  # of a piece that lies on the surface
+    last[PER_LINE - 1 :: PER_LINE] = on[PER_LINE - 1 :: PER_LINE]
+    return _spots(spots_of(points, triangles, places[on])) | {"ends": packed(on.cumsum()[last], "u4")}
 
 
 def _trail(points: FloatArray, triangles: IntArray, path: FloatArray, length: float) -> dict[str, Any]:
