@@ -41,6 +41,7 @@ from fem_plate import (
 )
 from particle import (
     AnyDrive as AnyDrive,
+    Body as Body,
     ConstantFriction as ConstantFriction,
     ContactSamples as ContactSamples,
     CoulombAdhesion as CoulombAdhesion,

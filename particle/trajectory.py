@@ -80,9 +80,7 @@ class Trajectory:
     contact: Callable[[NDArray[Any]], NDArray[Any]]  # rows of `ContactState` at rows
     heading: FloatArray | None = None  # (n,) rad, of a part with a face, as are these
     spin: FloatArray | None = None  # (n,) rad/s
-    pressure_margin: FloatArray | None = (
-        None  # (n,) the least pressure on the face over the mean; below 0 an edge lifts
-    )
+    pressure_margin: FloatArray | None = None  # (n,) the least pressure over the mean; below 0 an edge lifts
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property

@@ -47,7 +47,7 @@ def new_locals(surface: Surface, count: int) -> LocalSurface:
 def prepare_locals(surface: Surface, locals_: LocalSurface) -> None:
     """Make the scratch memory as good as new."""
     for k in range(len(locals_.frame)):
-        prepare(surface, local_of(locals_, k))
+        prepare(surface, LocalSurface(locals_.frame[k : k + 1], *(array[k] for array in locals_[1:])))
 
 
 @device_no_arrays

@@ -14,9 +14,8 @@ from particle.body.memory import HEADING, SPIN, STATE, V_X, V_Y, WORK, Memory, X
 from particle.body.rest import leaves_rest
 from particle.body.slide import begin_slip, slide
 from particle.body.state import base_at, contact_margin, end_reason, fill_row, rim_margin, settle
+from particle.events import PathRecord, Request, last_row, note, write
 from particle.events.mechanics import Counts, Now
-from particle.events.record import PathRecord, last_row, note, write
-from particle.events.request import Request
 from particle.jit import inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface

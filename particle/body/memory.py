@@ -12,8 +12,8 @@ from particle.body.balance import Balance
 from particle.body.collocation import STAGES
 from particle.body.face import Face
 from particle.body.limit import Search
+from particle.events import Row
 from particle.events.mechanics import Counts, Now
-from particle.events.record import Row
 from particle.records import Record, new_records
 from particle.surface import LocalSurface, Surface
 from particle.types import FloatArray, IntArray

@@ -15,8 +15,8 @@ from particle.body.face import Face
 from particle.body.limit import gauge, needed
 from particle.body.memory import Memory
 from particle.body.state import contact_margin, settle
+from particle.events import Request
 from particle.events.mechanics import Part
-from particle.events.request import Request
 from particle.friction import friction_limit, friction_slope
 from particle.jit import device_no_arrays, inlined
 

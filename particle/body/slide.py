@@ -11,8 +11,8 @@ from particle.body.face import Face
 from particle.body.limit import gauge, needed, slip_rate
 from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
 from particle.body.state import base_at, contact_margin, end_reason, rim_margin, settle, slip_speed
+from particle.events import Request
 from particle.events.mechanics import Now
-from particle.events.request import Request
 from particle.jit import device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface

@@ -18,8 +18,8 @@ from particle.body.balance import (
 from particle.body.face import Face
 from particle.body.memory import HEADING, LOSS, SPIN, V_X, V_Y, WORK, Memory, X, Y
 from particle.drives import evaluate_piece
+from particle.events import Row
 from particle.events.mechanics import Part
-from particle.events.record import Row
 from particle.jit import device_no_arrays
 from particle.modes import Verdict
 from particle.surface import LocalSurface, Surface, rim_gap
