@@ -223,7 +223,8 @@ def _check(run: SavedRun, k: int) -> None:
     check_numbers("the part", vars(run), {**of_each, "position": (k, 3), "velocity": (k, 3)})
     for group, one in (("rows", run.rows), ("margins", run.margins)):
         vectors = {name: (len(one.time), 2) for name in ("position", "velocity") if group == "rows"}
-        check_numbers(group, one._asdict(), {**dict.fromkeys(one._fields, (len(one.time),)), **vectors})
+        columns = {name: column for name, column in one._asdict().items() if column is not None}  # None: for faces only
+        check_numbers(group, columns, {**dict.fromkeys(columns, (len(one.time),)), **vectors})
     check_numbers("events", {"actuator": run.event_actuators}, {"actuator": (len(run.events),)})
     for states in (run.state, run.rows.state):
         if states.dtype.kind not in "iu" or not np.isin(states, list(State)).all():

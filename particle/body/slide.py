@@ -52,7 +52,6 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
         after = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
         state[WORK] += after - before
         return False
-    _, loss = powers(part, b)
     way = (2 * first + rate) * moment * moment / 6
     for i in range(3):
         for j in range(3):
