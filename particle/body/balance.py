@@ -13,8 +13,8 @@ equations give the contact's wrench about the face's origin in body axes, affine
 
     planar = W(K (X', Y', theta'); N, M) + P normal,     P = -K^-T B^T
 
-with the wrench W of friction. Tractions are Q(N)/A (1 + rho.S^-1 d), N d = (-M_2, M_1) N-weighted by Q'(N), so that W
-is linear in (N, M) but for Q(N), and u follows from 3 x 3 systems.
+with the wrench W of friction under the tractions (Q(N) + Q'(N) rho.S^-1 (-M_2, M_1))/A of a linear pressure. Q is made
+linear around a load, so that u follows from a 3 x 3 system, again until the load agrees.
 """
 
 from __future__ import annotations
