@@ -147,7 +147,7 @@ def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list
     wrong = []
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of {of} must lie on the plate; got {tuple(part.position)!r} m")
-    if surface.turns and not isinstance(part, Body):
+    if surface.turning_base and not isinstance(part, Body):
         wrong.append(f"Input {of} must be a Body on a base that turns; got a Micropart")
     return wrong
 

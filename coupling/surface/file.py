@@ -50,6 +50,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     check_room(path.parent, sum(np.asarray(value).nbytes for table in tables.values() for value in table.values()))
     with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
+        file.attrs["turning_base"] = surface.turning_base
         file.attrs["in_plane_count"] = surface.in_plane_count
         file.attrs.update({name: getattr(surface, name) for name in LENGTHS})
         for name in ("sources", "conics", "edges"):
@@ -113,6 +114,7 @@ def _read(path: Path) -> SurfaceMotion:
             drives=DriveTable(**tables["drives"]),
             store=BuiltCells(cells_of(tables["cells"]), float(file.attrs["error"])),
             moving_base=bool(file.attrs["moving_base"]),
+            turning_base=bool(file.attrs["turning_base"]),
             in_plane_count=int(file.attrs["in_plane_count"]),
             **rest,
         )

@@ -35,7 +35,7 @@ def base_at(local: LocalSurface, time: float) -> Base:
     s = (time - frame.time) / frame.unit
     x, v_x, a_x = evaluate_piece(local.base[0, :, 0], s, frame.unit)
     y, v_y, a_y = evaluate_piece(local.base[0, :, 1], s, frame.unit)
-    turn, spin, spin_rate = evaluate_piece(local.base[0, :, 2], s, frame.unit)
+    turn, spin, spin_rate = evaluate_piece(local.base[0, :, 2], s, frame.unit)  # 0 of a base that does not turn
     return Base(x, y, turn, v_x, v_y, spin, a_x, a_y, spin_rate)
 
 

@@ -104,7 +104,7 @@ def prepare(surface: Surface, local: LocalSurface) -> None:
     local.frame[0] = 0
     frame: Frame = local.frame[0]
     frame.surface_size, frame.floor, frame.overhang = surface.size, surface.floor / surface.size, surface.overhang
-    frame.base_drives, frame.in_plane, frame.cell = BASE * surface.moving_base, surface.in_plane_count, NOWHERE
+    frame.base_drives, frame.in_plane, frame.cell = surface.base_drives, surface.in_plane_count, NOWHERE
 
 
 def missing_place(local: LocalSurface) -> FloatArray:

@@ -20,7 +20,7 @@ from particle.drives import AnyDrive, DriveTable, accelerations, drive_table, sc
 from particle.surface.at_point import POINT_SIZE, SurfacePoint, sample_surface
 from particle.surface.cells import NOWHERE, CellStore
 from particle.surface.local import new_local
-from particle.surface.record import BASE, Surface
+from particle.surface.record import Surface
 from particle.types import FloatArray
 
 
@@ -51,9 +51,10 @@ class SurfaceMotion:
     overhang: float = math.inf  # a cell's polynomials hold out to this many half widths
     conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))  # (k, 4) m, as in `Outline`
     edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))  # (m, 3, 2) m, as in `Outline`
-    moving_base: bool = False  # whether three more drives carry the base in its plane: along x and y, and a turn
+    moving_base: bool = False  # whether two more drives carry the base in its plane
     half_thickness: float = 0.0  # m, height over the mid-plane of the face that parts lie on
     in_plane_count: int = 0  # how many drives move the mid-plane in its plane, each its own shape
+    turning_base: bool = False  # whether a third drive of the base turns it about the origin [rad]
 
     @property
     def record(self) -> Surface:
@@ -69,7 +70,7 @@ class SurfaceMotion:
             overhang=self.overhang,
             conics=self.conics,
             edges=self.edges,
-            moving_base=self.moving_base,
+            base_drives=self.base_drives,
             unit=float(self.stroke_times.min(initial=1.0)),
         )
 
@@ -86,7 +87,7 @@ class SurfaceMotion:
         """
         times = self.drives.stroke_time
         own = times[: len(self.sources) or self.shape_count]
-        strokes = np.concatenate([own, times[len(times) - BASE * self.moving_base :]])
+        strokes = np.concatenate([own, times[len(times) - self.base_drives :]])
         if not np.isfinite(strokes).any():
             strokes = times
         return strokes[np.isfinite(strokes)]
@@ -97,14 +98,14 @@ class SurfaceMotion:
         return bool(self.store.cells.grid[0].highest > 0) or len(self.sources) > 0
 
     @property
-    def turns(self) -> bool:
-        """Whether its base turns."""
-        return self.moving_base and bool(self.drives.coefficients[self.drives.first[-2] :].any())
+    def base_drives(self) -> int:
+        """How many drives move its base."""
+        return 2 * self.moving_base + self.turning_base
 
     @property
     def shape_count(self) -> int:
         """How many drives move shapes up and down."""
-        return len(self.drives.delay) - self.in_plane_count - BASE * self.moving_base
+        return len(self.drives.delay) - self.in_plane_count - self.base_drives
 
     @property
     def error(self) -> float:
@@ -225,7 +226,7 @@ class SurfaceMotion:
         """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""
         if not self.moving_base:
             return np.zeros(2)
-        return accelerations(self.drives, time)[-BASE:-1]
+        return accelerations(self.drives, time)[-self.base_drives :][:2]
 
 
 def _miscounts(given: Mapping[str, Sequence[AnyDrive]], count: int, kind: str) -> list[str]:

@@ -8,7 +8,7 @@ from particle.drives import DriveTable
 from particle.surface.cells import Cells
 from particle.types import FloatArray
 
-BASE = 3  # drives of a base that moves: along x, along y, and its turn about the origin
+BASE = 3  # drives that a base has at most: along x, along y, and its turn about the origin
 
 
 class Surface(NamedTuple):
@@ -24,5 +24,5 @@ class Surface(NamedTuple):
     overhang: float  # a cell's polynomials hold out to this many half widths
     conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
     edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
-    moving_base: bool  # whether three more drives carry the base in its plane
+    base_drives: int  # 0, or the two or three more drives of a base that moves in its plane
     unit: float  # s, of time in the polynomials that are made of cells and drives

@@ -62,11 +62,12 @@ def polynomial_surface(
     shapes, degree = _rows(c, size)
     (along_x, plane_degree), (along_y, _) = (_rows(component, size) for component in u)
     return SurfaceMotion(
-        drives=reduce(_joined, [monomial_table(c.shape[2]), monomial_table(u.shape[3]), _base_table(base or [])]),
+        drives=reduce(_joined, [monomial_table(c.shape[2]), monomial_table(u.shape[3]), drive_table(base or [])]),
         store=OneCell(shapes, degree, size, np.stack([along_x, along_y], axis=1), plane_degree),
         sources=np.zeros((0, 2)),
         size=size,
         moving_base=base is not None,
+        turning_base=base is not None and len(base) == 3,
         in_plane_count=u.shape[3],
     )
 
@@ -115,14 +116,9 @@ def platform_surface(
     if not (math.isfinite(size) and size > 0):
         raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
     flat = polynomial_surface([[1.0]], size=size)
-    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y, turn)]
-    return replace(flat, drives=reduce(_joined, tables), moving_base=True)
-
-
-def _base_table(base: Sequence[AnyDrive]) -> DriveTable:
-    """The drives of a base; one that does not turn has a still drive for that, one at rest none."""
-    table = drive_table(base)
-    return _joined(table, _still_table()) if len(base) == 2 else table
+    own = (z, x, y) if turn is None else (z, x, y, turn)
+    tables = [_still_table() if drive is None else drive_table([drive]) for drive in own]
+    return replace(flat, drives=reduce(_joined, tables), moving_base=True, turning_base=turn is not None)
 
 
 def _still_table() -> DriveTable:

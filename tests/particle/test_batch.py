@@ -117,7 +117,7 @@ def test_progress_ends_with_all(surface, parts):
 
 
 def test_an_error_on_the_way_ends_all_paths(surface, parts, monkeypatch):
-    def failed(driven, request, tolerance, stop):
+    def failed(driven, request, tolerance, stop, face):
         raise RuntimeError("no such cell")
 
     monkeypatch.setattr("particle.batch.find_path", failed)
