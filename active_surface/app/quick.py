@@ -21,6 +21,7 @@ LOOSE: Final = 1e-6  # the tolerance of coarser steps
 LEVELS, SHORTER = 8, 4  # of coarseness: exact, with coarse steps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
+MOMENT: Final = 1e-9  # s: its path has the cell at the start fitted, which may take longer than LIMIT
 MAX_ACTUATORS: Final = 60  # of a plate that is solved coarsely while something is dragged
 ROOM: Final = (0.5, 1.25)  # of the strokes: those that a model of a plate that stretches is made for
 
@@ -54,6 +55,8 @@ class QuickPaths:
         if surface is None:
             return None
         law, exact, count = build_friction(case), case.run.tolerance, len(case.actuators)
+        moment = case.run.model_copy(update={"duration": MOMENT})
+        follow_part(case.model_copy(update={"run": moment}), surface, law)
         for level in range(0 if rest else self._level.get(count, 0), LEVELS):
             tolerance, duration = exact, case.run.duration
             coarse = [how] if how else []

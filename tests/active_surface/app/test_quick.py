@@ -1,5 +1,7 @@
 """Quick paths: those of a run where that is quick, and marked where they are not."""
 
+import time
+
 import numpy as np
 import pytest
 from app_case import CASE
@@ -7,6 +9,7 @@ from app_case import CASE
 from active_surface.app import quick
 from active_surface.app.quick import LINEAR, PLATE, QuickPaths
 from coupling import SolvedPlates, read_case, run_case, silent
+from coupling.surface import cell_maker
 from particle import Stopped
 
 
@@ -50,7 +53,7 @@ def test_a_path_that_takes_too_long_is_cut_and_marked(case, patient, monkeypatch
 
     def stopped_twice(*arguments):
         calls.append(arguments)
-        if len(calls) < 3:
+        if len(calls) in (2, 3):  # the first fits a cell
             raise Stopped
         return follow(*arguments)
 
@@ -58,8 +61,23 @@ def test_a_path_that_takes_too_long_is_cut_and_marked(case, patient, monkeypatch
     cut = paths.of(case)
     assert cut.path.time[-1] == whole.time[-1] / 4
     assert cut.coarse == ("steps to 1e-06", "only its first 0.75 ms")
-    assert paths.of(case, rest=False).coarse == cut.coarse and len(calls) == 4  # while it is dragged
+    assert paths.of(case, rest=False).coarse == cut.coarse and len(calls) == 6  # while it is dragged
     assert paths.of(case).coarse == ()
+
+
+@pytest.mark.compiled
+def test_an_actuator_that_is_dragged_has_a_path_though_cells_take_long(case, monkeypatch):
+    make = cell_maker.CellMaker.make
+
+    def slow(*arguments):
+        time.sleep(2 * quick.LIMIT)
+        make(*arguments)
+
+    monkeypatch.setattr(cell_maker, "FEW", 0)  # as with many actuators, when a cell is fitted once a part is there
+    monkeypatch.setattr(cell_maker.CellMaker, "make", slow)
+    paths = QuickPaths(SolvedPlates())
+    for k in range(quick.LEVELS + 1):
+        assert paths.of(case.vary({"actuators.0.position.0": f"{k} um"}), rest=False) is not None
 
 
 @pytest.mark.slow
