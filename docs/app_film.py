@@ -67,7 +67,6 @@ def script(driver):
     yield from wait(22)
     driver.find_element(By.ID, "undo").click()
     yield from wait(14)
-    run("play()")
     while True:
         yield 0
 
