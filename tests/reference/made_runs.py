@@ -68,7 +68,8 @@ def made_run(path, heights, time=None, state=1, above=0.0, holes=(), actuators=1
     position = np.column_stack([path, np.broadcast_to(above, k)])
     time = 1e-3 * np.arange(k) if time is None else np.asarray(time, dtype=float)
     state = np.broadcast_to(state, k).astype(int)
-    rows = Samples(time, path, *[np.empty(0)] * (len(Samples._fields) - 3), state)
+    empty = dict.fromkeys(Samples._fields, np.empty(0)) | dict.fromkeys(Samples._field_defaults)
+    rows = Samples(**empty | {"time": time, "position": path, "state": state})
     return MadeRun(
         name="made",
         complete=True,

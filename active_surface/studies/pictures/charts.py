@@ -20,7 +20,7 @@ from active_surface.studies.pictures.selection import Scale, Selection, labelled
 from common import Unit, figure_of, legend_below
 from coupling.pictures import plain_ticks
 
-COLOURS: Final = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#dedede")
+COLOURS: Final = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#4f8a5b", "#a8a8a8", "#dedede")
 """Of the outcomes, by their number; they differ in grey, too."""
 NARROW: Final = 5.0  # inches: a figure with one key a line
 MAX_NAMES: Final = 12  # along an axis
