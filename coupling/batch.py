@@ -17,7 +17,16 @@ from coupling.scene import PlateScene, Scene
 from coupling.shared import answers_drives
 from coupling.solved_plates import SolvedPlates
 from coupling.summary import summarise
-from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible, processors, simulate_many
+from particle import (
+    AnyDrive,
+    Body,
+    Micropart,
+    SurfaceMotion,
+    Trajectory,
+    interruptible,
+    processors,
+    simulate_many,
+)
 from particle.friction import Contact
 
 AT_ONCE: Final = 256  # paths in memory at a time: each takes 0.13 MB, however short; larger batches are slower
@@ -28,7 +37,7 @@ class PathTask(NamedTuple):
     """A path to be followed."""
 
     surface: SurfaceMotion
-    part: Micropart
+    part: Micropart | Body
     friction: Contact
     run: RunCase
     drives: Sequence[AnyDrive] | None = None  # one an actuator; None: the surface's own
@@ -87,6 +96,7 @@ def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory
         run.after_detachment,
         [task.drives for task in tasks if task.drives is not None] or None,
         threads,
+        after_tipping=run.after_tipping,
     )
 
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from coupling.case import Case
 from coupling.drives import travel
-from coupling.part import build_part
+from coupling.part import build_point
 from coupling.scene import PlateScene, Scene
 from particle import Micropart, Outcome, PartAtRest, SurfaceMotion, Trajectory, part_at_rest
 from particle.drives import horizon
@@ -52,7 +52,7 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
     """The thresholds of a part that its drives did not carry far, or did not keep; None where `why_none` says why."""
     if why_none(case, scene, trajectory):
         return None
-    rest = at_rest(case, scene.surface, build_part(case), friction)
+    rest = at_rest(case, scene.surface, build_point(case), friction)
     own = factors_of(lambda factor: driven(scene, rest, factor))
     if math.isclose(own.slips, own.comes_off, rel_tol=10 * EXACT):  # friction ends with contact
         own = own._replace(slips=own.comes_off)
@@ -67,6 +67,8 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
 
 def why_none(case: Case, scene: Scene, trajectory: Trajectory) -> str:
     """Why a part needs no other drives, or why no factor of its drives tells anything, in a sentence; else empty."""
+    if case.part.face is not None:
+        return "Thresholds are found for parts without a footprint."
     if all(travel(drive) == 0 for drive in (*scene.lifts, *scene.base)):
         return "No drive moves."
     if trajectory.outcome in (Outcome.LEFT_PLATE, Outcome.WORK_LIMIT):

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
+from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
 from particle import (
+    Body,
     ConstantFriction,
     ContactSamples,
     CoulombAdhesion,
@@ -33,7 +34,15 @@ BLOCK = 50_000  # rows of a path whose curvatures are found together: 20 MB
 
 def build_friction(case: Case) -> Contact:
     """The friction law between part and surface."""
-    return friction_law(case.friction)
+    return friction_law(friction_of(case))
+
+
+def friction_of(case: Case) -> FrictionCase:
+    """The friction table of a case, a rough contact's with the area of the part's face."""
+    law, face = case.friction, case.part.face
+    if isinstance(law, KogutEtsionCase) and face is not None:
+        return law.model_copy(update={"contact_area": face.area})
+    return law
 
 
 @lru_cache(maxsize=64)
@@ -48,20 +57,44 @@ def friction_law(law: FrictionCase) -> Contact:
     return KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 
-def build_part(case: Case, position: tuple[float, float] | None = None) -> Micropart:
+def build_part(case: Case, position: tuple[float, float] | None = None) -> Micropart | Body:
     """The part of a case, at its start or another place [m]."""
-    p = case.part
-    return Micropart(p.mass, position or p.position, p.velocity, p.squeeze, p.centre_height)
+    p, place = case.part, position or case.part.position
+    if p.face is not None:
+        assert p.thickness is not None
+        return Body(
+            p.face,
+            p.thickness,
+            p.mass,
+            position=place,
+            heading=p.heading,
+            velocity=p.velocity,
+            spin=p.spin,
+            squeeze=p.squeeze,
+            centre_height=p.centre_height,
+            pressure=p.pressure,
+        )
+    return build_point(case, place)
+
+
+def build_point(case: Case, position: tuple[float, float] | None = None) -> Micropart:
+    """The same of a part without a footprint; raises ValueError for one that has one."""
+    p, place = case.part, position or case.part.position
+    if p.face is not None:
+        raise ValueError("part.footprint must not be given here: only paths and margins are found for it")
+    return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height)
 
 
 def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float | None:
-    """The largest shift of the centre of pressure over half the part's size, at some moments; None: size not given.
+    """The largest shift of the centre of pressure over half the part's size, at some moments.
+
+    None: a point's size is not given, or a face has its own pressure.
 
     Friction F on the face below a centre of mass at height h over it has the moment F h. What presses on the face, N +
     adhesion, takes it up by its shift s = F h / (N + adhesion); beyond s = size / 2 the part turns about its edge.
     Adhesion draws on the whole face alike, so it has no moment about its middle.
     """
-    if case.footprint is None:
+    if case.footprint is None or case.part.face is not None:
         return None
     if case.part.centre_height == 0:
         return 0.0

@@ -27,7 +27,7 @@ from coupling.results import CaseRecord, Output, SavedRun, record_of, write_resu
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from fem_plate import PlateShapes
-from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible
+from particle import AnyDrive, Body, Micropart, SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 
@@ -188,7 +188,7 @@ def tighter_run(run: RunCase, surface: SurfaceMotion) -> RunCase:
 
 def simulate_run(
     surface: SurfaceMotion,
-    part: Micropart,
+    part: Micropart | Body,
     friction: Contact,
     run: RunCase,
     drives: Sequence[AnyDrive] | None = None,
@@ -197,7 +197,15 @@ def simulate_run(
     driven, settings = surface if drives is None else surface.driven_by(drives), (run.scheme, run.after_detachment)
     try:
         return particle.simulate(
-            driven, part, friction, run.duration, run.gravity, run.tolerance, *settings, run.time_step
+            driven,
+            part,
+            friction,
+            run.duration,
+            run.gravity,
+            run.tolerance,
+            *settings,
+            run.time_step,
+            run.after_tipping,
         )
     except MemoryError:
         text = "run.duration must be shorter, as the steps of the path take more memory than there is"

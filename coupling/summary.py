@@ -34,6 +34,9 @@ class Summary:
     duration: float  # s, asked for
     at_rest_since: float | None  # s; None: it does not rest at the end
     end_position: tuple[float, float]  # m
+    end_heading: float | None  # rad, counter-clockwise, whole turns counted; None: a point, as for the next two
+    turned: float | None  # rad, from start to end
+    pressure_margin: float | None  # the least pressure under the part over the mean, along the path
     distance: float  # m, from start to end
     path_length: float  # m
     time_stuck: float  # s
@@ -103,6 +106,7 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
         duration=case.run.duration,
         at_rest_since=trajectory.at_rest_since,
         end_position=(float(trajectory.position[-1, 0]), float(trajectory.position[-1, 1])),
+        **_face(trajectory),
         distance=trajectory.distance,
         path_length=trajectory.path_length,
         time_stuck=trajectory.time_in(State.STICK),
@@ -132,6 +136,15 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
     if isinstance(scene, PlateScene):
         return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory, friction)))
     return summary
+
+
+def _face(trajectory: Trajectory) -> dict[str, float | None]:
+    """The figures of a part with a face."""
+    heading, pressure = trajectory.heading, trajectory.pressure_margin
+    if heading is None or pressure is None:
+        return dict.fromkeys(("end_heading", "turned", "pressure_margin"))
+    turned = float(heading[-1] - heading[0])
+    return {"end_heading": float(heading[-1]), "turned": turned, "pressure_margin": float(np.nanmin(pressure))}
 
 
 def _frames_per_cycle(case: Case, scene: Scene, end: float) -> float | None:

@@ -43,6 +43,7 @@ def simulate_many(
     drives: Sequence[Sequence[AnyDrive]] | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    after_tipping: str = "stop",
 ) -> list[Trajectory]:
     """Follow many parts by located events, with the same bits as from `simulate` for any number of threads.
 
@@ -85,7 +86,7 @@ def simulate_many(
         wrong += surface.drive_faults({f"drives of part {k}": own for k, own in enumerate(drives)})
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
-    wrong += faults(surface, duration, gravity, tolerance, after_detachment)
+    wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += [fault for k, part in enumerate(parts) for fault in part_faults(surface, part, f"part {k}")]
     if after_detachment == "fly" and any(isinstance(part, Body) for part in parts):
         wrong.append("Input after_detachment of simulate_many must be 'stop' with a Body; got 'fly'")
@@ -97,7 +98,7 @@ def simulate_many(
     def path(k: int) -> None:
         driven = surface if drives is None else surface.driven_by(drives[k])
         request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
-        found[k] = find_path(driven, request, tolerance, stop, face_of(parts[k], tolerance))
+        found[k] = find_path(driven, request, tolerance, stop, face_of(parts[k], tolerance, after_tipping == "stop"))
 
     pool, handed_out = ThreadPoolExecutor(threads or processors()), []
     try:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from particle.checks import finite, positive, refuse
 from particle.types import FloatArray
@@ -72,6 +73,13 @@ class Footprint:
     def second_moments(self) -> FloatArray:
         """(2, 2) m^2, the mean of rho rho^T over the face, rho counted from the centroid."""
         return np.eye(2) * self.radius**2 / 4 if self.radius else _moments(self.corners)[2]
+
+    def outline(self, position: ArrayLike, heading: ArrayLike) -> FloatArray:
+        """(..., k, 2) m, its corners, or places around a disc, at positions (..., 2) [m] and headings (...,) [rad]."""
+        around, turn = 2 * math.pi * np.arange(48) / 48, np.asarray(heading, dtype=float)[..., None]
+        x, y = self.radius * np.array([np.cos(around), np.sin(around)]) if self.radius else self.corners.T
+        turned = np.stack([np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y], axis=-1)
+        return np.asarray(position, dtype=float)[..., None, :] + turned
 
     @cached_property
     def reach(self) -> float:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.body import Face, march_body, new_body_memory
+from particle.body import Face, face_states, march_body, new_body_memory
 from particle.drives import horizon
 from particle.events import (
     Memory,
@@ -120,7 +120,7 @@ def find_path(
     if computed.verdict == Verdict.INTERRUPTED:
         return None
     sampler = partial(_by_events, surface, request, pairs, computed.rows)
-    trajectory = _trajectory(surface, request, computed, sampler)
+    trajectory = _trajectory(surface, request, computed, sampler, partial(_contact_states, surface, request))
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
         future = partial(_stays, surface, request, pairs, x, y)
@@ -149,16 +149,24 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
     def sampler(times: FloatArray) -> Rows:
         """The rows at ascending times [s]: pieces of the path, each from the row before."""
         places = np.searchsorted(rows["time"], times, side="right") - 1
-        out = rows[places].copy()
-        for k in np.flatnonzero((times > out["time"]) & (places + 1 < len(rows))):
-            row = out[k]
+        found, record = rows[places], new_record()
+        memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
+        for k in np.flatnonzero((times > found["time"]) & (places + 1 < len(rows))):
+            row = found[k]
             start = [row[name] for name in ("x", "y", "heading", "v_x", "v_y", "spin", "work", "dissipated")]
             begin, until = float(row["time"]), float(times[k])
             piece = request._replace(start=np.array(start), mode=int(row["mode"]), begin=begin, until=until)
-            out[k] = path(surface.record, piece).rows[-1]
-        return out
+            memory.counts[0] = record.lengths[0] = 0
+            done = march_body(surface.record, piece, face, memory, record)
+            found[k] = done.rows[done.lengths[0]["rows"] - 1]
+        return found
 
-    return _trajectory(surface, request, computed, sampler, face)
+    def contact(rows: Rows) -> Rows:
+        """Where contact and centre of mass are at rows of the path, and what acts there."""
+        memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
+        return face_states(surface.record, request, face, memory, rows)
+
+    return _trajectory(surface, request, computed, sampler, contact, face)
 
 
 def find_path_by_steps(
@@ -172,7 +180,8 @@ def find_path_by_steps(
             return _computed(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
 
     computed = _with_cells(surface, path)
-    return _trajectory(surface, request, computed, partial(_by_steps, surface, request, kind, computed.rows))
+    sampler = partial(_by_steps, surface, request, kind, computed.rows)
+    return _trajectory(surface, request, computed, sampler, partial(_contact_states, surface, request))
 
 
 def _computed(record: PathRecord, memory: Any) -> Computed:
@@ -259,6 +268,7 @@ def _trajectory(
     request: Request,
     computed: Computed,
     sampler: Callable[[FloatArray], Rows],
+    contact: Callable[[Rows], Rows],
     face: Face | None = None,
 ) -> Trajectory:
     rows = computed.rows
@@ -279,5 +289,5 @@ def _trajectory(
             rows["kinetic"], rows["potential"], rows["work"], rows["dissipated"], request.force * surface.size
         ),
         sampler=sampler,
-        contact=partial(_contact_states, surface, request),
+        contact=contact,
     )

@@ -73,7 +73,7 @@ def simulate(
     ----------
     surface : SurfaceMotion
         The moving surface.
-    part : Micropart
+    part : Micropart or Body
         The part and its start.
     friction : friction law
         The contact between them.
@@ -92,6 +92,8 @@ def simulate(
     time_step : float, optional
         Step of the schemes `"fixed"` and `"paper"`, which ignore the tolerance, s; by default 1e-4 of the shortest
         stroke.
+    after_tipping : str
+        `"stop"` ends the run where an edge of a Body lifts; `"ignore"` takes it to stay flat, whatever it says of that.
 
     Returns
     -------
@@ -116,9 +118,7 @@ def simulate(
         wrong.append(
             "Input scheme of simulate must be 'events' or 'fixed' where the mid-plane moves in its plane; got 'paper'"
         )
-    wrong += faults(surface, duration, gravity, tolerance, after_detachment)
-    if after_tipping not in ("stop", "ignore"):
-        wrong.append(f"Input after_tipping of simulate must be 'stop' or 'ignore'; got {after_tipping!r}")
+    wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += part_faults(surface, part, type(part).__name__)
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
@@ -168,6 +168,7 @@ def faults(
     gravity: float | Sequence[float],
     tolerance: float,
     after_detachment: str,
+    after_tipping: str,
 ) -> list[str]:
     """What is wrong with what all paths of a run have in common."""
     wrong = []
@@ -179,6 +180,8 @@ def faults(
         wrong.append(f"Input gravity of simulate must be an acceleration in m/s^2 or three of them; got {gravity!r}")
     if after_detachment not in ("stop", "fly"):
         wrong.append(f"Input after_detachment of simulate must be 'stop' or 'fly'; got {after_detachment!r}")
+    if after_tipping not in ("stop", "ignore"):
+        wrong.append(f"Input after_tipping of simulate must be 'stop' or 'ignore'; got {after_tipping!r}")
     if not (math.isfinite(duration) and duration > 0):
         wrong.append(f"Input duration of simulate must be a positive time in s; got {duration!r}")
     if not 1e-13 <= tolerance <= 1e-2:

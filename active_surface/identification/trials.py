@@ -17,7 +17,7 @@ from active_surface.identification.track import Track
 from active_surface.parameter import Parameter
 from coupling import PathTask, ProgressCallback, build_friction, build_part, follow
 from coupling.case import Case
-from particle import Micropart, SurfaceMotion, Trajectory, interruptible, processors
+from particle import Body, Micropart, SurfaceMotion, Trajectory, interruptible, processors
 from particle.friction import Contact
 from particle.surface import rim_gap
 
@@ -137,7 +137,7 @@ class Trials:
                     slope[track, column] = change / (other.shares[column] - trial.shares[column])
         return slope
 
-    def paths(self, number: int, runs: Sequence[tuple[Micropart, Contact]]) -> list[Trajectory]:
+    def paths(self, number: int, runs: Sequence[tuple[Micropart | Body, Contact]]) -> list[Trajectory]:
         """The paths of parts with their friction, until a track ends."""
         case, surface, track, _ = self.recordings[number]
         if self._stop.is_set():
@@ -193,7 +193,7 @@ class Trials:
         times = 1 if self.loss == "squares" else 2
         return self.best.cost * float(np.exp(rise / (times * self.freedom.sum())))
 
-    def run(self, number: int, shares: FloatArray) -> tuple[Micropart, Contact] | None:
+    def run(self, number: int, shares: FloatArray) -> tuple[Micropart | Body, Contact] | None:
         """A part and its friction; None where the case contradicts itself or the part is not on the plate."""
         case, surface, _, parameters = self.recordings[number]
         try:

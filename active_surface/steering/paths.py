@@ -9,9 +9,9 @@ import numpy as np
 from active_surface.arrays import FloatArray
 from active_surface.steering.robustness import Disturbance, disturbed
 from active_surface.studies import contact_of, start_faults
-from coupling import PathTask, build_drives, build_part, follow, one_blas_thread
+from coupling import PathTask, build_drives, build_part, follow, friction_of, one_blas_thread
 from coupling.case import ActuatorCase, Case
-from particle import Micropart, Outcome, SurfaceMotion, Trajectory
+from particle import Body, Micropart, Outcome, SurfaceMotion, Trajectory
 from particle.friction import Contact, ScaledFriction
 
 SETTLING = 1e-3  # s: times its speed, the extra distance of a part that still moves
@@ -41,12 +41,12 @@ class Paths:
         return trajectories
 
     def _contact(self, case: Case, factor: float) -> Contact:
-        contact = contact_of(case.friction)
+        contact = contact_of(friction_of(case))
         if isinstance(contact, str):
             raise ValueError(contact)
         return contact if factor == 1.0 else ScaledFriction(contact, factor)
 
-    def _parts(self, cases: Sequence[Case], shifts: FloatArray) -> list[Micropart]:
+    def _parts(self, cases: Sequence[Case], shifts: FloatArray) -> list[Micropart | Body]:
         """Parts with starts shifted by (n, 2) [m]; the other way if that is off the plate, not at all if both are."""
         starts = np.repeat(np.array([self.case.part.position]), len(shifts), axis=0)
         left = shifts.any(axis=1)

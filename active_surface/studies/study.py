@@ -15,7 +15,7 @@ from active_surface.studies.axes import Axis
 from active_surface.studies.columns import Threshold
 from active_surface.studies.points import Points
 from coupling import PACKAGES as SHARED
-from coupling import answers_drives, build_drives, friction_law
+from coupling import answers_drives, build_drives, friction_law, friction_of
 from coupling import versions as versions_of
 from coupling.case import (
     Case,
@@ -134,7 +134,7 @@ class Study:
         case = self.case_or_faults(self.points.values([k])[0])
         if isinstance(case, list):
             return case
-        law = contact_of(case.friction)
+        law = contact_of(friction_of(case))
         (faults,) = start_faults(case, self.points.displacements([k]) + case.part.position)
         return [*faults, law] if isinstance(law, str) else faults
 

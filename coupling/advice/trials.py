@@ -12,7 +12,7 @@ import numpy as np
 
 from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
 from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
-from coupling.part import build_friction, build_part, friction_law
+from coupling.part import build_friction, build_point, friction_law
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import doing, silent
 from coupling.result import Result
@@ -97,7 +97,7 @@ class Trials:
 
     def __init__(self, result: Result, largest_stroke: float) -> None:
         self.case, self.scene, self.largest_stroke, self.count = result.case, result.scene, largest_stroke, 0
-        self.friction, self.part = build_friction(self.case), build_part(self.case)
+        self.friction, self.part = build_friction(self.case), build_point(self.case)
         path, self.size = result.trajectory, self.scene.surface.size
         moved = path.distance if path.outcome in KEPT else 0.0
         self.least = max(NEAR * self.size, FARTHER * moved)  # m, by which a trial must move the part

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
 from pydantic import ValidationError, model_validator
 
 from common import draw, notebook_html
@@ -107,7 +108,12 @@ class Case(CaseTables):
 
     @property
     def footprint(self) -> float | None:
-        """The side [m] of the part's footprint, or the root of the contact area; None: neither is given."""
+        """The side [m] of the part's footprint, or the root of the contact area; None: neither is given.
+
+        Of a face the larger of its extents along its own x and y.
+        """
+        if (face := self.part.face) is not None:
+            return 2 * face.radius or float(np.ptp(face.corners, axis=0).max())
         if self.part.size is None and isinstance(self.friction, KogutEtsionCase):
             return math.sqrt(self.friction.contact_area)
         return self.part.size

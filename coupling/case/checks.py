@@ -20,9 +20,9 @@ from coupling.case.actuators import (
     half_size,
     must_be_inside,
 )
-from coupling.case.friction import TableCase
+from coupling.case.friction import KogutEtsionCase, TableCase
 from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, PlateCase, PlatformCase, ShapeCase
-from coupling.case.table import Faults, Location, Mistake, Table, location_text
+from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
 from coupling.case.tables import CaseTables, RunCase
 from coupling.case.values import length_text, unreadable
 from coupling.suggestion import near
@@ -67,11 +67,27 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
                 mistakes += _fixed(plate, mesh, made)
         except Faults as error:
             mistakes += error.mistakes
+    mistakes += _face(tables)
     if wrong := _too_many(plate, made, tables.run.duration):
         mistakes.append((("run", "duration"), wrong))
     if mistakes:
         raise Faults(mistakes)
     return {**dict(tables), "actuators": made, "friction": friction, "lattice": None}
+
+
+def _face(tables: CaseTables) -> Iterator[Mistake]:
+    """Yield what does not go with a part that has a footprint, or none."""
+    run, friction, face = tables.run, tables.friction, tables.part.face
+    if face is None:
+        if run.after_tipping == "ignore":
+            yield ("run", "after_tipping"), 'must be "stop" without a footprint in [part]: a point does not tip'
+        return
+    if run.scheme != "events":
+        yield ("run", "scheme"), f'must be "events" with a footprint in [part]; got "{run.scheme}"'
+    if run.after_detachment == "fly":
+        yield ("run", "after_detachment"), 'must be "stop" with a footprint in [part]; got "fly"'
+    if isinstance(friction, KogutEtsionCase) and "contact_area" in stated(friction):
+        yield ("friction", "contact_area"), "must not be given with a footprint in [part], whose area it is"
 
 
 def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:
@@ -128,6 +144,11 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
     for at, gap in zip(places, gaps(mesh, list(places.values())), strict=True):
         if gap <= mesh.least_gap:
             yield at, must_be_inside(gap, mesh)
+        elif at[0] == "part" and (face := tables.part.face) is not None:
+            corners = face.outline(tables.part.position, tables.part.heading)
+            if (gap := float(mesh.outline.gap(corners).min())) < 0:
+                must = "must have all of the part on the plate"
+                yield at, f"{must}; got a part that reaches {length_text(-gap)} beyond the rim"
     for one, other in _shared(list(places.values())[:-1], least):
         first = location_text(("actuators", one, "position"))
         if one >= alone:

@@ -1,4 +1,4 @@
-"""The tables of a case file: all that it may have, and [part] and [run]."""
+"""The tables of a case file: all that it may have, and [run]."""
 
 from __future__ import annotations
 
@@ -9,28 +9,12 @@ from pydantic import ConfigDict, Field, StrictFloat, StrictInt
 
 from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
+from coupling.case.part import PartCase
 from coupling.case.plates import AnyPlate
 from coupling.case.table import Contradictions, Table
-from coupling.case.values import Force, Gravity, Length, Mass, Point, PositiveLength, PositiveTime, Velocity
+from coupling.case.values import Gravity, PositiveTime
 
 MAX_STEPS: Final = 100_000_000  # of a fixed scheme
-
-
-class PartCase(Table):
-    """The micropart at the start, in kg, m, m/s and N."""
-
-    mass: Mass
-    """Its mass."""
-    position: Point = Field(examples=[["100 um", "50 um"]])
-    """Where it is at the start; on the plate, or counted from the platform."""
-    velocity: Velocity = (0.0, 0.0)
-    """How fast it moves at the start, over the platform if there is one."""
-    size: PositiveLength | None = Field(default=None, examples=["100 um"])
-    """The side of its footprint, for the check of curvature; without it the root of the contact area."""
-    squeeze: Force = Field(default=0.0, ge=0)
-    """A constant force that presses it onto the surface, along the normal."""
-    centre_height: Length = Field(default=0.0, ge=0, examples=["50 um"])
-    """How high its centre of mass stands above the surface that it lies on."""
 
 
 class RunCase(Table):
@@ -54,6 +38,8 @@ class RunCase(Table):
     """The step of the schemes with fixed steps; without it 1e-4 of the shortest stroke."""
     after_detachment: Literal["stop", "fly"] = "stop"
     """Whether the run ends where the part comes off, or follows its flight."""
+    after_tipping: Literal["stop", "ignore"] = "stop"
+    """Whether the run ends where an edge of a part with a footprint lifts, or takes the part to stay flat."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:

@@ -22,7 +22,7 @@ from coupling.result import Result
 from coupling.results import SavedRun
 from coupling.scene import Scene, lifts_of, platform_scene
 from coupling.summary import Summary, summary_of
-from particle import AnyDrive, Event, EventKind, Rows, Samples, SegmentDrive
+from particle import AnyDrive, Event, EventKind, Samples, SegmentDrive, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Portrait:
     case: Case
     summary: Summary
     sentence: str  # how it ended
-    rows: Rows  # where states change, among others
+    rows: Samples | Trajectory  # where states change, among others
     samples: Samples  # as many as make smooth lines
     events: Sequence[Event]
     margins: MarginCurves

@@ -30,6 +30,7 @@ ROW, STRIP = 1.4, 0.16  # inches: the heights of a row over time, and of the str
 MIN_WIDTH = 0.6  # of a panel: the width of a map
 LETTER, PADS = 6.0, 12.0  # points: the width of a digit on an axis, and of the space around its numbers
 NARROWEST = 7.6  # inches, of the picture
+OUTLINES = 7  # of a part with a face, from start to end
 MANY, SHOWN = 30.0, 6.0  # cycles: a longer run is drawn twice over time, whole and around the decisive moment
 
 
@@ -70,6 +71,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     else:
         unit = unit_for(box, "m")
         keys = draw_way(axes[0], portrait, unit)
+    _draw_faces(axes[-1], portrait, unit)
     if window is not None:
         axes[1].set_title(f"Around the path, also at {portrait.when}", fontsize=10)
     _draw_loss(axes[-1], portrait, unit)
@@ -127,6 +129,20 @@ def _align_labels(panels: Sequence[Axes]) -> None:
     for panel in panels:
         left = ScaledTranslation(-(LETTER * longest + PADS) / 72, 0, panel.figure.dpi_scale_trans)
         panel.yaxis.set_label_coords(0, 0.5, panel.transAxes + left)
+
+
+def _draw_faces(axes: Axes, portrait: Portrait, unit: Unit) -> None:
+    """Draw the outline of a part with a face at the start and the end, and fainter at some moments in between."""
+    face, rows = portrait.case.part.face, portrait.samples
+    if face is None or portrait.rows.heading is None:
+        return
+    times = np.linspace(rows.time[0], rows.time[-1], OUTLINES)
+    heading = np.interp(times, portrait.rows.time, portrait.rows.heading)
+    places = np.column_stack([np.interp(times, rows.time, values) for values in rows.position.T])
+    for k, corners in enumerate(face.outline(places, heading) * unit.per_si):
+        ends = k in (0, OUTLINES - 1)
+        closed = np.concatenate([corners, corners[:1]])
+        axes.plot(*closed.T, color="black", linewidth=1.2 if ends else 0.6, alpha=1.0 if ends else 0.45, zorder=3.5)
 
 
 def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:

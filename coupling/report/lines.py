@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -61,6 +62,7 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
             f"{s.distance * per_metre:.4f} {unit} from the start, over a path of "
             f"{s.path_length * per_metre:.2f} {unit}",
         ),
+        *_turn(s),
         (
             "contact",
             f"stuck {s.time_stuck * MILLI:.3f} ms, slipping {s.time_slipping * MILLI:.3f} ms, {count(s.slips, 'slip')}",
@@ -70,6 +72,14 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
         hops = f"{count(s.flights, 'flight')}, {count(s.landings, 'landing')}"
         rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
     return rows + ([("loads", ", ".join(loads))] if (loads := _loads(s)) else [])
+
+
+def _turn(s: Summary) -> list[tuple[str, str]]:
+    """How far a part with a face has turned, and how evenly it stands."""
+    if s.end_heading is None or s.turned is None:
+        return []
+    turned, heading = math.degrees(s.turned), math.degrees(s.end_heading)
+    return [("turn", f"{turned:+.4f} degrees, to a heading of {heading:.4f} degrees")]
 
 
 def _ended(s: Summary) -> str:
@@ -217,6 +227,8 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
+    if s.pressure_margin is not None:
+        rows.append(("", f"least pressure under the part {s.pressure_margin:.3g} times the mean (0: an edge lifts)"))
     if s.tipping:
         unless = ", if nothing adheres" if s.tipping > 1 and not s.tips else ""
         rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size{unless}"))

@@ -151,9 +151,15 @@ def _anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> tuple[Path,
         _copy(saved.plate_path, plate)
         for frame in frames:
             plate.append(frame.time, **frame.fields)
-    with part_file(folder, saved.name) as part:
+    with h5py.File(saved.part_path, "r") as file:
+        root, k = file["VTKHDF"], len(saved.time)
+        points = int(root["NumberOfPoints"][0])
+        shape = (k, points) if points > 1 else (k,)
+        position = root["Points"][: k * points].reshape(*shape, 3)
+        fields = {name: data[: k * points].reshape(*shape, *data.shape[1:]) for name, data in root["PointData"].items()}
+    with part_file(folder, saved.name, points - 1) as part:
         _copy(saved.part_path, part)
-        part.append(saved.time, saved.position, **{name: getattr(saved, name) for name in OF_PART})
+        part.append(saved.time, position, **fields)
     return folder / f"{saved.name}.plate.vtkhdf", folder / f"{saved.name}.part.vtkhdf"
 
 

@@ -47,6 +47,9 @@ UNITS = {
     "separation": "of a rough contact, over its roughness",
     "contact_load": "N, by which the asperities of a rough contact are pressed",
     "adhesion": "N, of a rough contact",
+    "heading": "rad, counter-clockwise, of a part with a face",
+    "spin": "rad/s",
+    "pressure_margin": "1, least pressure under the face over the mean",
     "state": "0: stuck, 1: slipping, 2: flying",
 }
 
@@ -101,13 +104,17 @@ def write_results(
         **(_contact_fields(trajectory, times, rough) if output.forces else {}),
     }
     position = np.column_stack([onto_surface(scene, samples.position), samples.height])
+    if (face := case.part.face) is not None and samples.heading is not None:
+        of_part |= {name: getattr(samples, name) for name in ("heading", "spin", "pressure_margin")}
+        position = _with_corners(position, face.outline(position[:, :2], samples.heading), trajectory, times)
+        of_part = {name: np.repeat(values[:, None], position.shape[1], axis=1) for name, values in of_part.items()}
     arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(scene, result.loads))
     step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
     step_size = sum(values.nbytes for values in step.values()) + PART_STEP
     check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
-        part_file(folder, case.name, metadata) as part,
+        part_file(folder, case.name, position[0].size // 3 - 1, metadata) as part,
     ):
         for group, members in arrays.items():
             part.add_arrays(group, members)
@@ -123,6 +130,15 @@ def write_results(
     if output.surface:
         further.append(write_surface(scene.surface, folder / f"{case.name}.surface.h5"))
     return [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"], further
+
+
+def _with_corners(middle: FloatArray, corners: FloatArray, trajectory: Trajectory, times: FloatArray) -> FloatArray:
+    """The middle (k, 3) and the corners (k, p, 2) [m] of a face, all on the plane on which it stands: (k, 1 + p, 3)."""
+    normal = trajectory.contact_at(times).normal
+    away = corners - middle[:, None, :2]
+    rise = -(away @ normal[:, :2, None])[..., 0] / normal[:, 2:]
+    points = np.concatenate([away, np.nan_to_num(rise)[..., None]], axis=2) + middle[:, None]
+    return np.concatenate([middle[:, None], points], axis=1)
 
 
 def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEtsion | None) -> dict[str, FloatArray]:

@@ -195,6 +195,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     rows = Samples(**{name: rows[()] for name, rows in ours["rows"].items() if name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
+    step = checked_count("NumberOfPoints", part["VTKHDF/NumberOfPoints"][0])  # of which the first is the middle
     end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())
     return SavedRun(
         name=split(paths["plate"])[0],
@@ -203,8 +204,8 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
         time=time,
         **surface,
         actuators=points[: checked_count("actuators", ours.attrs["actuators"], len(points))],
-        position=part["VTKHDF/Points"][:k],
-        **{name: fields[name][:k] for name in OF_PART},
+        position=part["VTKHDF/Points"][: k * step : step],
+        **{name: fields[name][: k * step : step] for name in OF_PART},
         events=[
             Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(EVENT_NUMBERS, numbers, strict=True)))
             for kind, *numbers, place in zip(*columns, strict=True)

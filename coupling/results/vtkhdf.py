@@ -1,6 +1,7 @@
 """Result files of a run: the plate and the part over time, in transient VTKHDF for ParaView and VTK.
 
-`NAME.plate.vtkhdf` holds a mesh of triangles at rest, with fields that change; `NAME.part.vtkhdf` one moving point.
+`NAME.plate.vtkhdf` holds a mesh of triangles at rest, with fields that change; `NAME.part.vtkhdf` one moving point, or
+of a part with a face its middle and a moving polygon around it.
 Until its `with` block has ended well a file is called `NAME.partial.plate.vtkhdf` or `NAME.partial.part.vtkhdf`. One
 that an exception leaves behind opens like any other and holds the steps so far; after a kill, those flushed.
 
@@ -97,7 +98,7 @@ class StepsFile:
         stored as int64, float32 as it is, any other number as float64. Raises OSError, and writes nothing, where the
         disk has no room.
 
-        position: (3,) [m], of the part; z is the surface's height.
+        position: (3,) [m] of the part, or (p, 3) of its middle and corners; z is the surface's height.
         """
         new, first = np.atleast_1d(np.asarray(times, np.float64)), self.count
         arrays = {name: np.asarray(values) for name, values in fields.items()}
@@ -113,7 +114,8 @@ class StepsFile:
             _write(self._steps["PointDataOffsets"][name], first, steps * self._n_points)
         for name, row in self._constants.items():
             _write(self._steps[name], first, np.repeat(row, len(steps), axis=0))
-        _write(self._steps["PointOffsets"], first, np.zeros_like(steps) if position is None else steps)
+        offsets = np.zeros_like(steps) if position is None else steps * self._n_points
+        _write(self._steps["PointOffsets"], first, offsets)
         if position is not None:
             _write(self._root["Points"], first, np.reshape(position, (-1, 3)))
         self._times = np.concatenate([self._times, new])
@@ -155,17 +157,23 @@ def plate_file(
     return _written(lay_out, Path(folder), name, "plate", metadata)
 
 
-def part_file(folder: str | Path, name: str, metadata: Metadata = NONE) -> AbstractContextManager[StepsFile]:
-    """Write `NAME.part.vtkhdf`, whose steps have a position and fields () or (3,); the rest is as in `plate_file`."""
+def part_file(
+    folder: str | Path, name: str, corners: int = 0, metadata: Metadata = NONE
+) -> AbstractContextManager[StepsFile]:
+    """Write `NAME.part.vtkhdf`, whose steps have a position and fields () or (3,); the rest is as in `plate_file`.
+
+    corners: of the polygon around its middle; then steps have positions and fields of the middle and each corner.
+    """
 
     def lay_out(file: h5py.File) -> StepsFile:
-        part = StepsFile(file, "PolyData", shape=(), topologies=(4,))
+        part = StepsFile(file, "PolyData", shape=(1 + corners,) if corners else (), topologies=(4,))
         growing(file["VTKHDF"], "Points", np.float64, (3,))
-        for key, n_cells in {"Vertices": 1, "Lines": 0, "Polygons": 0, "Strips": 0}.items():  # VTK wants all four
+        cells_of = {"Vertices": [0], "Lines": [], "Polygons": range(1, corners + 1), "Strips": []}  # VTK wants all four
+        for key, points in cells_of.items():
             cells = file["VTKHDF"].create_group(key)
-            cells["NumberOfCells"] = cells["NumberOfConnectivityIds"] = [n_cells]
-            cells["Connectivity"] = np.arange(n_cells)
-            cells["Offsets"] = np.arange(n_cells + 1)
+            cells["NumberOfCells"], cells["NumberOfConnectivityIds"] = [int(len(points) > 0)], [len(points)]
+            cells["Connectivity"] = np.array(points, np.int64)
+            cells["Offsets"] = np.array([0, len(points)] if len(points) else [0], np.int64)
         return part
 
     return _written(lay_out, Path(folder), name, "part", metadata)

@@ -1,6 +1,7 @@
 """A part with a face: a rigid body that slides, turns and tips on the moving surface."""
 
 from particle.body.body import Body
+from particle.body.contact import face_states
 from particle.body.face import Face
 from particle.body.march import march_body
 from particle.body.memory import new_memory as new_body_memory

@@ -1,6 +1,6 @@
 """The event-located integrator: rest, sliding, flight, and what lies between them."""
 
-from particle.events.contact_state import ContactState, contact_states, rest_loads
+from particle.events.contact_state import CONTACT_STATE, ContactState, contact_states, rest_loads
 from particle.events.integrator import FIRST_STEP, march
 from particle.events.mechanics import (
     Counts,

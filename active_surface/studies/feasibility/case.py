@@ -34,7 +34,7 @@ from active_surface.studies.feasibility.ground import Ground, make_ground, valid
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.response import range_fault
 from common import quantity_text
-from coupling import Progress, borders, build_drives, build_part, check_case, silent
+from coupling import Progress, borders, build_drives, build_point, check_case, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
@@ -111,6 +111,8 @@ def feasibility(
     most = spans[1] * stroke if largest is None else largest
     if not case.actuators:
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
+    if case.part.face is not None:
+        raise ValueError("Input case of feasibility must have a part without a footprint, whose rest it looks at")
     if not frequency:
         raise ValueError("Input case of feasibility must have a drive that moves; got none")
     if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):
@@ -169,7 +171,7 @@ def _chart(
 
 def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray, across: int) -> Feasible:
     """The areas over a window [s]; a plate with mass is driven anew at each factor."""
-    case, part = ground.case, build_part(ground.case)
+    case, part = ground.case, build_point(ground.case)
     if ground.follows:
         surface = ground.driven(1.0, 1.0)
         return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, case.run.gravity, across)

@@ -16,6 +16,7 @@ from coupling.case.values.quantities import (
     ONE,
     TAG,
     Angle,
+    AngularVelocity,
     Density,
     FileBeside,
     Force,

@@ -72,6 +72,7 @@ def _beside(name: str, info: ValidationInfo) -> str:
 Length = Annotated[float, Quantity("m", "150 um")]
 Time = Annotated[float, Quantity("s", "50 ms")]
 Angle = Annotated[float, Quantity("rad", "90 deg")]
+AngularVelocity = Annotated[float, Quantity("rad/s", "90 deg/s")]
 Frequency = Annotated[float, Quantity("Hz", "300 Hz", positive=True)]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
