@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
 from coupling.margins import LOSSES
@@ -24,6 +25,8 @@ from coupling.pictures.portrait import Portrait, portrait_of
 from coupling.pictures.time import MARKS, Curves, Span, curves_of, draw_events, draw_over_time
 from coupling.result import Result
 from particle import HALO, shade_keys
+
+FloatArray = NDArray[np.float64]
 
 PANEL = 5.0  # inches, about: the side of a map
 ROW, STRIP = 1.4, 0.16  # inches: the heights of a row over time, and of the strip of events
@@ -55,7 +58,9 @@ def draw_result(result: Result, axes: Axes | None = None) -> Figure:
 def compose(figure: Figure, portrait: Portrait) -> None:
     """Draw the run into an empty figure: maps, and below them what happens over time."""
     box, rows, line, plate = portrait.box, portrait.rows, portrait.samples.position, portrait.plate
-    window = path_window(line, box, plate.actuators) if plate else None
+    outlines = _outlines(portrait)
+    shown = np.concatenate([line, outlines.reshape(-1, 2)])
+    window = path_window(shown, box, plate.actuators) if plate else None
     curves = curves_of(portrait)
     width, height = np.ptp(box, axis=0)
     columns = [float(np.clip(width / height, MIN_WIDTH, 1.0)), *([] if window is None else [1.0])]
@@ -68,10 +73,10 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     if plate:
         axes[0].set_title(f"The plate at {portrait.when}, {portrait.most}", fontsize=10)
         keys, unit = draw_maps(axes, plate, rows, line, window)
+        _draw_outlines(axes[-1], outlines, unit)
     else:
         unit = unit_for(box, "m")
         keys = draw_way(axes[0], portrait, unit)
-    _draw_faces(axes[-1], portrait, unit)
     if window is not None:
         axes[1].set_title(f"Around the path, also at {portrait.when}", fontsize=10)
     _draw_loss(axes[-1], portrait, unit)
@@ -131,18 +136,22 @@ def _align_labels(panels: Sequence[Axes]) -> None:
         panel.yaxis.set_label_coords(0, 0.5, panel.transAxes + left)
 
 
-def _draw_faces(axes: Axes, portrait: Portrait, unit: Unit) -> None:
-    """Draw the outline of a part with a face at the start and the end, and fainter at some moments in between."""
-    face, rows = portrait.case.part.face, portrait.samples
-    if face is None or portrait.rows.heading is None:
-        return
-    times = np.linspace(rows.time[0], rows.time[-1], OUTLINES)
-    heading = np.interp(times, portrait.rows.time, portrait.rows.heading)
-    places = np.column_stack([np.interp(times, rows.time, values) for values in rows.position.T])
-    for k, corners in enumerate(face.outline(places, heading) * unit.per_si):
-        ends = k in (0, OUTLINES - 1)
+def _outlines(portrait: Portrait) -> FloatArray:
+    """The outlines (OUTLINES, k, 2) [m] of a part's face from start to end; of a point none, (0, 0, 2)."""
+    face, line, heading = portrait.case.part.face, portrait.samples, portrait.rows.heading
+    if face is None or heading is None:
+        return np.empty((0, 0, 2))
+    times = np.linspace(line.time[0], line.time[-1], OUTLINES)
+    places = np.column_stack([np.interp(times, line.time, values) for values in line.position.T])
+    return face.outline(places, np.interp(times, portrait.rows.time, heading))
+
+
+def _draw_outlines(axes: Axes, outlines: FloatArray, unit: Unit) -> None:
+    """Draw the first and the last outline, and fainter those in between."""
+    for k, corners in enumerate(outlines * unit.per_si):
+        ends = k in (0, len(outlines) - 1)
         closed = np.concatenate([corners, corners[:1]])
-        axes.plot(*closed.T, color="black", linewidth=1.2 if ends else 0.6, alpha=1.0 if ends else 0.45, zorder=3.5)
+        axes.plot(*closed.T, color="black", linewidth=1.2 if ends else 0.6, alpha=1.0 if ends else 0.4, zorder=2.8)
 
 
 def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:
@@ -180,4 +189,5 @@ def draw_way(axes: Axes, portrait: Portrait, unit: Unit, width: float = AXES_WID
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, top)
         axes.grid(alpha=0.3)
+    _draw_outlines(axes, _outlines(portrait), unit)
     return draw_path(axes, portrait.rows, line, unit, portrait.box) + keys
