@@ -71,7 +71,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
-# Abuse: mutated and generated inputs, random paths, killed commands. docs/trust.md has what they show.
+# Abuse: mutated and generated inputs, random paths, killed commands. docs/trust.md and docs/accuracy.md have what they show.
 SECONDS ?= 600
 SEED ?= 1
 COUNT ?= 1000000
