@@ -20,7 +20,7 @@ CONTENTS = {  # the pages below a page, by caption
     "index": {
         "First steps": ["quick-start", "tutorial", "gallery/index"],
         "How to": [
-            *("howto/own-mesh", "howto/own-friction", "howto/general-plates"),
+            *("howto/own-mesh", "howto/general-plates"),
             *("howto/measured-motion", "howto/waves", "howto/identify", "howto/optics"),
         ],
         "The program": [
