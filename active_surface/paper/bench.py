@@ -39,7 +39,7 @@ Place = tuple[float, float]  # m
 
 @dataclass(frozen=True)
 class Parameters:
-    """What the paper states, and what it leaves open (docs/paper-readings.md): one set for all figures.
+    """What the paper states, and what it leaves open (docs/paper.md): one set for all figures.
 
     What one figure alone needs and the paper does not state stands beside its computation.
     """

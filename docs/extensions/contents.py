@@ -27,7 +27,7 @@ CONTENTS = {  # the pages below a page, by caption
             *("commands", "case-file", "results", "pictures", "app"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
-        "Theory and trust": ["theory", "accuracy", "paper", "paper-readings", "limits", "trust", "benchmarks"],
+        "Theory and trust": ["theory", "accuracy", "paper", "limits", "trust", "benchmarks"],
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture", "contributing", "changes"],
     },
