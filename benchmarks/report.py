@@ -1,4 +1,4 @@
-"""Tables of `benchmarks/RESULTS.md`, and the picture of `docs/benchmarks.md`."""
+"""Tables of `benchmarks/RESULTS.md`, and its picture."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-DOCS = Path(__file__).parents[1] / "docs"
-PAGE, PICTURE = DOCS.parent / "benchmarks/RESULTS.md", DOCS / "benchmark_plate.png"
+FOLDER = Path(__file__).parent
+PAGE, PICTURE = FOLDER / "RESULTS.md", FOLDER / "plate.png"
 OURS = "active-surface"
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 # Drawn: prefix of the method's name, colour, marker.
