@@ -6,7 +6,7 @@ than the separation d is pressed by z - d, in units of the critical interference
     I^b = ((z - d)/w_c)^b phi dz,      J_c^b = I^b (eps/w_c)^c,      J_nc = (4/3) [(eps/x)^2 - 0.25 (eps/x)^8] phi dz
 
 where x = eps + d - z is the gap of an asperity that does not touch, equations (3)-(5) of the paper are sums of
-integrals over ranges of interference. Corrections to their printed form are listed in docs/theory.md.
+integrals over ranges of interference. Corrections to their printed form are listed in docs/paper.md.
 """
 
 from __future__ import annotations
