@@ -117,7 +117,7 @@ class StepsFile:
         offsets = np.zeros_like(steps) if position is None else steps * self._n_points
         _write(self._steps["PointOffsets"], first, offsets)
         if position is not None:
-            _write(self._root["Points"], first, np.reshape(position, (-1, 3)))
+            _write(self._root["Points"], first * self._n_points, np.reshape(position, (-1, 3)))
         self._times = np.concatenate([self._times, new])
         if time.monotonic() - self._flushed >= FLUSH_AFTER:
             self.flush()

@@ -149,7 +149,7 @@ def test_fields_have_type_default_and_comment(fields):
     assert rows["stroke"] == ("stroke", "float", "", "m")
     assert rows["dwell"].default == "0.0" and rows["dwell"].comment.startswith("s, ")
     of_case = {row.name: row for row in fields.of(PartCase)}
-    assert of_case["mass"][:3] == ("mass", "float", "") and of_case["mass"].comment.startswith("kg: ")
+    assert of_case["mass"][:3] == ("mass", "float", "computed") and of_case["mass"].comment.startswith("kg: ")
     assert of_case["velocity"][1:3] == ("tuple[float, float]", "(0.0, 0.0)")
     assert of_case["velocity"].comment.startswith("m/s: ")
     assert [row.name for row in fields.of(particle.State)] == ["STICK", "SLIP", "FLIGHT"]

@@ -249,3 +249,24 @@ def test_what_a_face_does_not_go_with_is_refused(turntable):
     jumping = platform_surface(x=Drive(1e-5, 100.0, cycle="sine", delay=1e-3), size=1e-3)
     with pytest.raises(ValueError, match="without jumps of velocity under a Body; got one at 0.001 s"):
         simulate(jumping, part, law, 0.01)
+
+
+def test_the_contact_of_a_small_face_is_that_of_a_point(plate):
+    law, start = CoulombAdhesion(0.02), {"position": (1e-4, 2e-4)}
+    small = Footprint.rectangle(2e-6, 2e-6)
+    face = Body(small, 2e-6, 1e-9, **start, heading=0.3, centre_height=0.0, pressure="uniform")
+    paths = [simulate(plate, part, law, 0.02) for part in (face, Micropart(1e-9, **start))]
+    stuck = 0.5 * paths[1].time[np.flatnonzero(paths[1].state == 0)[:1]]
+    times = np.append(np.linspace(1e-3, 2e-2, 20), stuck)
+    ours, theirs = (path.contact_at(times) for path in paths)
+    for name, near in (("contact", 1e-10), ("centre", 1e-10), ("normal", 1e-6), ("friction", 1e-12)):
+        assert getattr(ours, name) == pytest.approx(getattr(theirs, name), abs=near)
+    assert ours.point_pull == pytest.approx(theirs.pull, rel=1e-3)
+
+
+def test_friction_on_a_turning_table_is_against_the_slip(turntable):
+    path = simulate(turntable, moving(SQUARE, (0.02, 0), 0.0, position=(2e-4, 1e-4)), CoulombAdhesion(0.3), 1e-3)
+    samples = path.contact_at([0.0])
+    assert samples.normal[0] == pytest.approx([0, 0, 1], abs=1e-12)
+    assert samples.friction[0, 0] < 0 and np.hypot(*samples.friction[0, :2]) == pytest.approx(path.friction_force[0])
+    assert samples.centre[0, 2] - samples.contact[0, 2] == pytest.approx(2.5e-5)

@@ -127,7 +127,8 @@ def test_every_field_stands_in_a_template_as_toml_with_its_text(kind: str) -> No
 
 def test_a_template_says_what_a_field_is_without_being_given() -> None:
     text = template("case").replace("\n#   ", " ")
-    said = {match[2]: match[1] for match in re.finditer(r"\. ((?:Required|Optional)[^\n]*)\n#?(\w+) = ", text)}
+    fields = list(re.finditer(r"\. ((?:Required|Optional)[^\n]*)\n#?(\w+) = ", text))
+    said = {match[2]: match[1] for match in reversed(fields)}  # where a name comes twice, of the first
     assert said["supports"] == 'Optional, by default "clamped": "clamped", "simply-supported" or "free".'
     assert said["pressure"] == 'Optional, by default "0 Pa": a pressure such as "100 Pa".'
     assert said["top_face"] == "Optional, by default true: true or false."

@@ -1,0 +1,150 @@
+"""Cases whose part has a footprint: what is read, refused, computed and written."""
+
+import csv
+import math
+
+import h5py
+import numpy as np
+import pytest
+
+from coupling import Case, InputError, read_run, run_case
+from coupling.part import build_friction, build_part
+from coupling.report import lines
+from particle import Body, Footprint, Micropart
+
+TABLES = {
+    "plate": {"shape": "platform", "motion": {"x": {"stroke": "0.4 um", "frequency": "500 Hz", "cycle": "cosine"}}},
+    "part": {
+        "footprint": "rectangle",
+        "sides": ["100 um", "60 um"],
+        "thickness": "20 um",
+        "density": "2330 kg/m^3",
+        "position": ["10 um", "0 um"],
+        "heading": "30 deg",
+        "spin": "100 rad/s",
+    },
+    "friction": {"model": "coulomb", "coefficient": 0.3},
+    "run": {"duration": "6 ms"},
+    "name": "face",
+}
+
+
+def case_of(**tables):
+    return Case.model_validate(TABLES | {name: TABLES[name] | keys for name, keys in tables.items()})
+
+
+def part_of(**keys):
+    rest = {key: value for key, value in TABLES["part"].items() if key not in ("footprint", "sides")}
+    return Case.model_validate(TABLES | {"part": rest | keys})
+
+
+def refusal(changes):
+    """What is said of tables with other ones in their place, a line each."""
+    with pytest.raises(InputError) as error:
+        Case.model_validate(TABLES | changes)
+    return "\n".join(f"{field} {message}" for field, message in error.value.problems)
+
+
+def test_mass_and_height_follow_from_the_block():
+    case = case_of()
+    assert case.part.mass == pytest.approx(100e-6 * 60e-6 * 20e-6 * 2330)
+    assert case.part.centre_height == 1e-5
+    thicker = case.vary({"part.thickness": "40 um", "part.heading": "45 deg"})
+    assert thicker.part.mass == pytest.approx(2 * case.part.mass) and thicker.part.centre_height == 2e-5
+    assert thicker.part.heading == pytest.approx(math.pi / 4)
+    assert case.footprint == pytest.approx(1e-4)
+    assert isinstance(build_part(part_of(footprint="disc", radius="50 um")), Body)
+
+
+def test_a_rough_contact_has_the_area_of_the_face():
+    rough = case_of().vary({"friction": {"model": "kogut-etsion", "preset": "paper"}})
+    square = rough.vary(
+        {
+            "friction": {"model": "kogut-etsion", "preset": "paper", "contact_area": "1e4 um^2"},
+            "part": {"mass": 2e-9, "position": (0.0, 0.0)},
+        }
+    )
+    assert isinstance(build_part(square), Micropart)
+    ratio = build_friction(rough).pull_off / build_friction(square).pull_off
+    assert ratio == pytest.approx(0.6, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"footprint": "disc"}, 'part.radius is missing; with footprint = "disc" it must be a length'),
+        ({"radius": "50 um"}, 'part.radius must not be given with footprint = "rectangle", which has sides'),
+        ({"mass": "1 ug"}, "part.density must not be given with mass"),
+        ({"density": None}, 'part.mass is missing; it must be a mass such as "2e-9 kg", or give density instead'),
+        ({"thickness": None}, "part.thickness is missing; with a footprint it must be a length"),
+        ({"size": "1 um"}, "part.size must not be given with a footprint, which has sides"),
+        ({"footprint": None}, "part.sides must not be given without a footprint"),
+        ({"sides": ["1 um"]}, "part.sides must be two lengths, along its x and y; got"),
+        (
+            {"footprint": "polygon", "sides": None, "corners": [["0 um", "0 um"], ["1 um", "1 um"], ["2 um", "2 um"]]},
+            "part.corners must be three or more corners, in order around the part, whose sides do not cross",
+        ),
+    ],
+)
+def test_keys_that_do_not_go_together_are_refused(keys, said):
+    given = {key: value for key, value in (TABLES["part"] | keys).items() if value is not None}
+    assert said in refusal({"part": given})
+
+
+@pytest.mark.parametrize(
+    ("table", "keys", "said"),
+    [
+        ("run", {"scheme": "fixed"}, 'run.scheme must be "events" with a footprint'),
+        ("run", {"after_detachment": "fly"}, 'run.after_detachment must be "stop" with a footprint'),
+        ("friction", {"model": "kogut-etsion", "coefficient": None, "contact_area": "1 um^2"}, "friction.contact_area"),
+    ],
+)
+def test_what_does_not_go_with_a_face_is_refused(table, keys, said):
+    changed = {key: value for key, value in (TABLES[table] | keys).items() if value is not None}
+    assert said in refusal({table: changed})
+
+
+def test_a_point_does_not_tip():
+    point = {"mass": "1 ug", "position": ["0 um", "0 um"]}
+    wrong = refusal({"part": point, "run": {"duration": "1 ms", "after_tipping": "ignore"}})
+    assert wrong == 'run.after_tipping must be "stop" without a footprint in [part]: a point does not tip'
+
+
+def test_all_of_the_part_must_be_on_the_plate():
+    plate = {"shape": "disc", "radius": "300 um", "thickness": "5 um", "youngs_modulus": "169 GPa"}
+    plate |= {"poisson_ratio": 0.3}
+    actuators = [{"position": ["0 um", "0 um"], "stroke": "1 um", "frequency": "100 Hz"}]
+    part = TABLES["part"] | {"position": ["0 um", "260 um"]}
+    with pytest.raises(ValueError, match=r"must have all of the part on the plate; got a part that .* um beyond"):
+        Case.model_validate(TABLES | {"plate": plate, "actuators": actuators, "part": part})
+
+
+@pytest.mark.compiled
+def test_a_run_turns_and_says_so(tmp_path):
+    result = run_case(case_of(), output=tmp_path, csv=True)
+    path, summary = result.trajectory, result.summary
+    assert abs(path.heading[-1] - path.heading[0]) > 0.01
+    assert summary.turned == path.heading[-1] - path.heading[0] and summary.end_heading == path.heading[-1]
+    assert summary.pressure_margin == pytest.approx(path.pressure_margin.min())
+    assert dict(lines(summary))["turn"].startswith(f"{math.degrees(summary.turned):+.4f} degrees, to a heading of ")
+    # At rest, after its spin: the largest acceleration over that which friction bears, without a torque.
+    largest = 2e-7 * (2 * math.pi * 500) ** 2 / (0.3 * 9.80665)
+    assert summary.margins.slip.value == pytest.approx(largest, rel=1e-5)
+    assert np.nanmax(result.margin_curves.slip) == pytest.approx(largest, rel=1e-2)
+
+    with (tmp_path / "face.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    samples = path.at([float(row["time [s]"]) for row in rows])
+    assert [float(row["heading [rad]"]) for row in rows] == pytest.approx(samples.heading, abs=1e-12)
+
+    saved = read_run(tmp_path / "face")
+    face = Footprint.rectangle(1e-4, 6e-5)
+    with h5py.File(tmp_path / "face.part.vtkhdf") as file:
+        points, heading = file["VTKHDF/Points"][:].reshape(-1, 5, 3), file["VTKHDF/PointData/heading"][::5]
+    assert saved.position == pytest.approx(points[:, 0], abs=0)
+    assert points[:, 1:, :2] == pytest.approx(face.outline(points[:, 0, :2], heading), abs=1e-15)
+    assert points[:, :, 2] == pytest.approx(0.0, abs=1e-15)
+    assert saved.to_xarray()["heading"].values[-1] == path.heading[-1]
+    drawn = [line.get_xydata() for line in result.plot().axes[0].lines]
+    first = face.outline(path.position[0], path.heading[0])
+    assert any(len(data) == 5 and np.ptp(data, axis=0) == pytest.approx(np.ptp(first, axis=0) * 1e6) for data in drawn)
