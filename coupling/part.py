@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from particle import (
     ConstantFriction,
     ContactSamples,
     CoulombAdhesion,
+    Footprint,
     FrictionTable,
     KogutEtsion,
     Micropart,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
+FLAT, MAX_SAG = 0.3, 100.0  # roughnesses: where the bent contact is found
 BLOCK = 50_000  # rows of a path whose curvatures are found together: 20 MB
 
 
@@ -122,16 +124,38 @@ def pressing_force(load: FloatArray, friction: Contact) -> FloatArray:
     return load + (friction.pull_off if states_adhesion(friction) else 0.0)
 
 
-def part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
-    """The part's size times the largest curvature under it at the rows of its path."""
+class Bent(NamedTuple):
+    """How a plate is bent under a part where it is bent most along the path."""
+
+    curvature: float  # of the part's size: size times the largest curvature, in any direction
+    sag: float | None  # over the roughness of a rough contact; None: another law
+    friction: float | None  # at zero load, of contact only where the surfaces meet, over that of a flat face
+    pull_off: float | None  # likewise; None: flat enough, or it touches at a few asperities
+
+
+def bent_under(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> Bent | None:
+    """How the plate is bent under the part at the rows of its path; None: the part's size is not given."""
     size = case.footprint
     if size is None:
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places, times = trajectory.position[on_plate], trajectory.time[on_plate]
-    blocks = (slice(start, start + BLOCK) for start in range(0, len(times), BLOCK))
-    hessians = (surface.evaluate_along(places[some], times[some]).hessian for some in blocks)
-    return size * max(float(np.abs(np.linalg.eigvalsh(block)).max()) for block in hessians)
+    worst, curvature = np.zeros((2, 2)), -1.0
+    for start in range(0, len(times), BLOCK):
+        hessians = surface.evaluate_along(places[start : start + BLOCK], times[start : start + BLOCK]).hessian
+        sizes = np.abs(np.linalg.eigvalsh(hessians)).max(axis=1)
+        if sizes.max() > curvature:
+            worst, curvature = hessians[sizes.argmax()], float(sizes.max())
+    if not isinstance(law := friction_of(case), KogutEtsionCase):
+        return Bent(size * curvature, None, None, None)
+    face = case.part.face or Footprint.rectangle(size, size)
+    sag = 0.5 * curvature * face.reach**2 / law.roughness
+    if not FLAT < sag <= MAX_SAG:
+        return Bent(size * curvature, sag, None, None)
+    rough = KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
+    flat, bent = rough.on_face(face), rough.on_face(face, worst)
+    ratio = float(bent.friction_limit(0.0)) / float(flat.friction_limit(0.0))
+    return Bent(size * curvature, sag, ratio, bent.pull_off / flat.pull_off)
 
 
 def top_face_share(contact: ContactSamples) -> float | None:

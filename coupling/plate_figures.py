@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix, diags
 from coupling.case import MAX_VIBRATING, SAME_PLACE, Case, InputError
 from coupling.drives import moments, travel
 from coupling.extremes import extremes, sharp_points
-from coupling.part import part_curvature, states_adhesion, tipping_of, top_face_share
+from coupling.part import bent_under, states_adhesion, tipping_of, top_face_share
 from coupling.ringing import RingingModel
 from coupling.scene import PlateScene
 from coupling.stretch import Stretch
@@ -81,6 +81,9 @@ class PlateFigures:
     plate_rings: bool  # whether a drive's velocity or acceleration jumps
     quasi_static_error: float | None  # relative, of the surface's acceleration; None: no density given, or it rings
     part_curvature: float | None  # part size times largest curvature on its path; None: size not given
+    part_sag_over_roughness: float | None  # of the plate under the part's size there; None: no rough contact
+    bent_friction: float | None  # limit at zero load of contact only where the surfaces meet, over that of a flat face
+    bent_pull_off: float | None  # likewise; both None where the sag is small, or so large that few asperities touch
     part_sag: float  # m, the plate's deflection under the part's largest force
 
 
@@ -105,6 +108,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
     strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in driven])
+    bent = bent_under(case, shapes.outline, surface, trajectory)
     return PlateFigures(
         theory="linear" if stretch is None else "von-karman",
         plate_unknowns=shapes.unknowns,
@@ -129,7 +133,10 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         strokes_over_first=strokes,
         plate_rings=rings,
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
-        part_curvature=part_curvature(case, shapes.outline, surface, trajectory),
+        part_curvature=bent and bent.curvature,
+        part_sag_over_roughness=bent and bent.sag,
+        bent_friction=bent and bent.friction,
+        bent_pull_off=bent and bent.pull_off,
         part_sag=sag,
     )
 

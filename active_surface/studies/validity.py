@@ -39,6 +39,7 @@ FIGURES: Final = (
     "quasi_static_error",
     "plate_rings",
     "part_curvature",
+    "part_sag_over_roughness",
     "tipping",
     "tips",
     "energy_balance",

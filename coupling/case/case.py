@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
 from pydantic import ValidationError, model_validator
 
 from common import draw, notebook_html
@@ -113,7 +112,7 @@ class Case(CaseTables):
         Of a face the larger of its extents along its own x and y.
         """
         if (face := self.part.face) is not None:
-            return 2 * face.radius or float(np.ptp(face.corners, axis=0).max())
+            return 2 * face.radius or float((face.corners.max(axis=0) - face.corners.min(axis=0)).max())
         if self.part.size is None and isinstance(self.friction, KogutEtsionCase):
             return math.sqrt(self.friction.contact_area)
         return self.part.size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Field
 
@@ -23,7 +23,9 @@ from coupling.case.values import (
     Velocity,
     expected_of,
 )
-from particle import Footprint
+
+if TYPE_CHECKING:
+    from particle import Footprint
 
 OUTLINES: Final = {"rectangle": "sides", "disc": "radius", "polygon": "corners"}
 """The key with the size of each footprint."""
@@ -33,9 +35,11 @@ _CORNERS: Final = "three or more corners, in order around the part, whose sides 
 def _footprint(data: Mapping[str, Any]) -> Footprint | None:
     """The footprint of keys that are right each by itself; None: a point, or a size is missing or wrong."""
     size = data.get(OUTLINES.get(data.get("footprint") or "", ""))
+    if size is None:
+        return None
+    from particle import Footprint  # here, because it loads numpy
+
     try:
-        if size is None:
-            return None
         if data["footprint"] == "rectangle":
             return Footprint.rectangle(*size)
         return Footprint.disc(size) if data["footprint"] == "disc" else Footprint.polygon(size)

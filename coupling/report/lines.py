@@ -233,7 +233,9 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         unless = ", if nothing adheres" if s.tipping > 1 and not s.tips else ""
         rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size{unless}"))
     if s.part_curvature is not None:
-        rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
+        sag = s.part_sag_over_roughness
+        under = "" if sag is None else f"; the plate sags under it by {sag:.2g} times the roughness"
+        rows.append(("", f"part size times curvature {s.part_curvature:.2g}{under}"))
     return rows
 
 

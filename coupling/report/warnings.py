@@ -13,6 +13,7 @@ from coupling.summary import PlateSummary, Summary
 # The model holds to about a per cent up to these.
 MAX_DEFLECTION = 0.2  # of the thickness
 MAX_LINEAR_ERROR = 0.01  # of the path: beyond it a run names the theory that has stretching
+FLAT = 0.3  # sags over the roughness: contact as on flat faces
 MAX_CURVATURE = 0.1  # of one over the part's size
 MAX_QUASI_STATIC_ERROR = 0.05  # of the acceleration
 MAX_QUASI_STATIC_SHARE = 0.01  # of the acceleration: beyond it a run names the line that has inertia
@@ -172,4 +173,13 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
         yield (
             f"Part size times curvature reaches {s.part_curvature:.2g}; the point-part model holds up to about "
             f"{MAX_CURVATURE}."
+        )
+    if s.part_sag_over_roughness is not None and s.part_sag_over_roughness > FLAT:
+        bent = "Bent so, only a few asperities touch."
+        if s.bent_friction is not None and s.bent_pull_off is not None:
+            friction = f"{s.bent_friction:.2g} times the friction at zero load"
+            bent = f"Bent so, it has {friction} and {s.bent_pull_off:.2g} times the pull-off force."
+        yield (
+            f"The plate sags under the part by up to {s.part_sag_over_roughness:.2g} times the roughness; the contact is "
+            f"that of flat faces, which holds up to about {FLAT}. {bent}"
         )

@@ -1,0 +1,45 @@
+"""The contact of a part on a bent plate, beside that of flat faces which a run takes."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from coupling import Case
+from coupling.part import bent_under
+from particle import polynomial_surface
+
+CASE = {
+    "plate": {"shape": "platform"},
+    "part": {"mass": "2e-9 kg", "position": ["0 um", "0 um"], "size": "100 um"},
+    "friction": {"model": "kogut-etsion", "preset": "paper"},
+    "run": {"duration": "1 ms"},
+}
+PATH = SimpleNamespace(position=np.array([[0.0, 0.0], [1e-4, 0.0]]), time=np.array([0.0, 1e-3]))
+EVERYWHERE = SimpleNamespace(gap=lambda places: np.ones(len(places)))
+
+
+def bent(xx, yy, **tables):
+    surface = polynomial_surface([[0, 0, yy / 2], [0, 0, 0], [xx / 2, 0, 0]], size=1e-3)
+    return bent_under(Case.model_validate(CASE | tables), EVERYWHERE, surface, PATH)
+
+
+@pytest.mark.parametrize(
+    ("xx", "yy", "friction", "pull_off"),
+    [(-80, -80, 11.834602, 1.3632966), (60, 60, 3.780255, 0.9104900), (80, -80, 5.385862, 0.9215777)],
+)
+def test_friction_and_pull_off_fall_as_on_a_face_of_that_curvature(xx, yy, friction, pull_off):
+    found = bent(xx, yy)
+    assert found.friction == pytest.approx(friction / 41.79725, rel=1e-5)
+    assert found.pull_off == pytest.approx(pull_off / 2.982497, rel=1e-5)
+    assert found.curvature == pytest.approx(abs(xx) * 1e-4)
+    roughness = Case.model_validate(CASE).friction.roughness
+    assert found.sag == pytest.approx(
+        abs(xx) * 1e-8 / 4 / roughness
+    )  # half the curvature times the half diagonal squared
+
+
+def test_a_face_that_is_flat_enough_and_other_laws_have_no_bent_contact():
+    assert bent(1.0, 0.0)[2:] == (None, None)
+    assert bent(1e5, 0.0)[2:] == (None, None)
+    assert bent(60, 60, friction={"model": "constant", "limit": "1 nN"})[1:] == (None, None, None)
