@@ -180,6 +180,6 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
             friction = f"{s.bent_friction:.2g} times the friction at zero load"
             bent = f"Bent so, it has {friction} and {s.bent_pull_off:.2g} times the pull-off force."
         yield (
-            f"The plate sags under the part by up to {s.part_sag_over_roughness:.2g} times the roughness; the contact is "
-            f"that of flat faces, which holds up to about {FLAT}. {bent}"
+            f"The plate sags under the part by up to {s.part_sag_over_roughness:.2g} times the roughness; the contact "
+            f"is that of flat faces, which holds up to about {FLAT}. {bent}"
         )
