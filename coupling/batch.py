@@ -96,7 +96,8 @@ def _together(tasks: Sequence[PathTask], threads: int | None) -> list[Trajectory
         run.after_detachment,
         [task.drives for task in tasks if task.drives is not None] or None,
         threads,
-        after_tipping=run.after_tipping,
+        None,
+        run.after_tipping,
     )
 
 

@@ -36,6 +36,7 @@ COLUMNS: Final = {
     "end_time": Column("f8", "s", "when the path ended"),
     "distance": Column("f8", "m", "from start to end"),
     "path_length": Column("f8", "m", "length of the way"),
+    "turned": Column("f8", "rad", "from the heading at the start to that at the end; nan: a point"),
     "last_motion": Column("f8", "s", "when the part moved last; 0: never"),
     "largest_load": Column("f8", "N", "largest normal force at events and steps"),
     "outcome": Column("i1", "", "how the path ended"),
@@ -51,7 +52,7 @@ SENTENCES: Final = (
     *(outcome.sentence for outcome in Outcome),
     "The case of this point has mistakes, or its plate or path cannot be found.",
 )
-EXAMPLES: Final = {"m": "1 um", "s": "1 ms", "N": "1 uN"}
+EXAMPLES: Final = {"m": "1 um", "s": "1 ms", "N": "1 uN", "rad": "5 deg"}
 OF_REFUSED: Final = ("outcome", "mistakes")
 """Columns with a meaning at refused points."""
 EXPECTED: Final = 'a condition such as "distance > 1 um" or "outcome = stuck"'
@@ -75,6 +76,7 @@ def put(records: Records, k: int, start: Sequence[float], trajectory: Trajectory
         end,
         trajectory.distance,
         trajectory.path_length,
+        np.nan if trajectory.heading is None else trajectory.heading[-1] - trajectory.heading[0],
         end if at_rest is None else at_rest,
         trajectory.normal_force.max(),
         OUTCOMES.index(trajectory.outcome.value),

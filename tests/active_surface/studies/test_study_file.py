@@ -5,6 +5,7 @@ from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
 from coupling import CaseError
+from coupling.case import PartCase
 
 STROKE = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["10 um", "20 um"]\n'
 
@@ -43,7 +44,7 @@ def test_axes_of_the_plate_vary_slowest(tmp_path):
         ("actuators.0.frequenzy", "actuators[0] has no frequenzy; did you mean frequency?"),
         ("actuatos.0.stroke", "the case has no actuatos; did you mean actuators?"),
         ("actuators.2.stroke", "its actuators are counted from 0 to 1, * for all; got 2"),
-        ("part.", 'part has no ""; it has mass, position, velocity, size, squeeze, centre_height'),
+        ("part.", 'part has no ""; it has ' + ", ".join(PartCase.model_fields)),
         ("actuators.stroke", "its actuators are counted from 0 to 1, * for all; got stroke"),
         ("part.position", "must be a single value; got part.position, which is a list or table; name one in it"),
         ("part.position.2", "its part.position are counted from 0 to 1, * for all; got 2"),
