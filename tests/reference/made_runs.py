@@ -1,6 +1,6 @@
 """Runs as if read from files, made up: a square plate with one actuator, a part that is where it is told to be."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -28,10 +28,11 @@ class MadeRun(SavedRun):
     """A saved run without files."""
 
     heights: np.ndarray = None
+    part: dict = field(default_factory=dict)
 
     @property
     def case(self):
-        return Case.model_validate(CASE)
+        return Case.model_validate(CASE | {"part": CASE["part"] | self.part})
 
     def plate_field(self, name, steps=slice(None)):
         assert name == "deflection"

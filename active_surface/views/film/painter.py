@@ -20,6 +20,7 @@ LIFT = 0.004  # of the frame's longer side, towards the camera: lines lie before
 LIGHT, FROM_ABOVE = np.array([-0.35, 0.55, 0.76]), 0.8  # right, up and towards the camera, and so much more from above
 AMBIENT, DIFFUSE = 0.42, 0.6  # brightness of the surface without light, and what light adds at most
 BALL = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.6, "specular_power": 30}
+FACE = 0.75  # opacity of the face of a part
 GREY, LOST = "#59636e", "#7a4b94"
 COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
 
@@ -89,6 +90,14 @@ class Painter:
         ball: dict[str, Any] = {"style": "points", "render_points_as_spheres": True, "lighting": True, **BALL}
         self._ball = self._add(pv.PolyData(np.zeros((1, 3))), None, 5.4, point_size=2 * self._ball_radius, **ball)
         self._ball_actor = self._actors[-1][0]
+        self._face = pv.PolyData()
+        if (face := scene.face) is not None:
+            count = len(face.outline((0.0, 0.0), 0.0))
+            corners = pv.PolyData(np.zeros((count, 3)), faces=[count, *range(count)])
+            look = {"show_edges": True, "edge_color": "black", "line_width": 1.5 * line, "lighting": False}
+            self._face = self._add(corners, None, 4.5, opacity=FACE, **look)
+            self._face_actor = self._actors[-1][0]
+            self._ball_actor.visibility = face.reach * layout.scale < self._ball_radius * scene.size
 
     def _add(self, mesh: pv.PolyData, shapes: FloatArray | None, lift: float, **look: Any) -> pv.PolyData:
         """Add a mesh, which its shapes move if it has any; sizes are in pixels of the picture."""
@@ -117,6 +126,11 @@ class Painter:
         up = self._ball_radius / layout.scale
         self._ball.points = places(here, np.maximum(below, moment.part[2])) + [0.0, 0.0, up]
         self._ball_actor.prop.color = colour_of(moment)
+        if (face := self._scene.face) is not None:
+            corners = face.outline(moment.part[:2], moment.heading)
+            heights = self._scene.shapes_at(corners) @ moment.amplitudes
+            self._face.points = places(corners, heights)
+            self._face_actor.prop.color = colour_of(moment)
         for actor, place in self._actors:
             actor.position = place + np.append(moment.shift, 0.0) / self._scene.size
         window = self._plotter.render_window

@@ -23,7 +23,7 @@ from coupling.pictures import PITCHES, Scale, is_visible, path_window
 from coupling.results import SavedRun
 from coupling.scene import platform_scene
 from fem_plate import extent, pitch
-from particle import State
+from particle import Footprint, State
 
 MAX_TRIANGLES, MAX_HALVINGS = 20_000, 7  # of a mesh that is refined to be drawn, and of its edges
 WIDER = 3.0  # times what the part goes up and down is the least width of a window
@@ -42,6 +42,7 @@ class Moment(NamedTuple):
     time: float  # s
     amplitudes: FloatArray  # (r,) of the modes
     part: FloatArray  # (3,) m
+    heading: float  # rad; 0 of a point
     under: float  # m, the surface's height under the part
     state: State
     lost: bool
@@ -73,6 +74,11 @@ class Scene:
     def size(self) -> float:
         """The longer side [m] of the frame."""
         return extent(self.frame)
+
+    @cached_property
+    def face(self) -> Footprint | None:
+        """The face of the part; None: it is a point."""
+        return self.run.case.part.face
 
     @property
     def mesh_width(self) -> float:
@@ -175,9 +181,11 @@ class Scene:
         part = np.column_stack([place, np.interp(times, run.time, run.position[:, 2])])
         under = (self.shapes_at(place) * amplitudes).sum(axis=1)
         states = [State(int(state)) for state in rows.state[np.searchsorted(rows.time, times, side="right") - 1]]
+        heading = np.zeros(len(times)) if rows.heading is None else np.interp(times, rows.time, rows.heading)
         lost = times >= (math.inf if run.loss is None else run.loss.time)
         return [
-            Moment(*row) for row in zip(times, amplitudes, part, under, states, lost, self.shifts(times), strict=True)
+            Moment(*row)
+            for row in zip(times, amplitudes, part, heading, under, states, lost, self.shifts(times), strict=True)
         ]
 
 
@@ -189,7 +197,9 @@ def shapes_of(mesh: pv.PolyData) -> FloatArray:
 def scene_of(run: SavedRun) -> Scene:
     """The scene of a run: all of its surface, or a window around a path that is short beside it."""
     path, then = _path(run)
-    frame, window = _frame(run, path)
+    face, heading = run.case.part.face, run.rows.heading
+    corners = [] if face is None or heading is None else [face.outline(path[k], heading[k]) for k in (0, -1)]
+    frame, window = _frame(run, np.concatenate([path, *corners]))
     low, high = frame + AROUND * extent(frame) * np.array([[-1.0], [1.0]])
     inside = ((run.points >= low) & (run.points <= high)).all(axis=1)
     used, corners = np.unique(run.triangles[inside[run.triangles].any(axis=1)], return_inverse=True)

@@ -59,6 +59,17 @@ def test_the_part_is_where_it_should_be_in_the_colour_of_its_state(camera, state
     assert {State.SLIP: red > 2 * blue, State.STICK: blue > 2 * red, State.FLIGHT: max(red, blue) < 150}[state]
 
 
+def test_a_part_with_a_face_is_drawn_with_its_corners_and_turns():
+    part = {"footprint": "rectangle", "sides": (2e-4, 2e-4), "thickness": 5e-5}
+    run = made_run(PATH, lambda points: hill(points, 0.0), state=int(State.SLIP))
+    run = replace(run, part=part, rows=run.rows._replace(heading=np.linspace(0, np.pi / 4, len(PATH))))
+    for time, corner in ((0.0, [0.9e-4, 0.9e-4]), (4e-3, [1.15e-4, 0.0])):  # of a square, and of one on its corner
+        made, moment, image = painted(run, "top", time)
+        around = np.array([corner, [-corner[0], corner[1]], [1.3e-4, 1.3e-4]])
+        x, y = np.rint(made.pixels(made.places(moment.part[:2] + around, np.zeros(3))) - made.box[0]).astype(int).T
+        assert reds(image)[image.shape[0] - 1 - y, x].tolist() == [True, True, False]
+
+
 def test_the_surface_has_the_colours_of_its_heights():
     made, _, image = painted(hilly(), "top")
     place = made.places(np.array([[5e-5, -1.5e-4], [-4.5e-4, -4.5e-4]]), np.zeros(2))
