@@ -157,7 +157,7 @@ def _anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> tuple[Path,
         shape = (k, points) if points > 1 else (k,)
         position = root["Points"][: k * points].reshape(*shape, 3)
         fields = {name: data[: k * points].reshape(*shape, *data.shape[1:]) for name, data in root["PointData"].items()}
-    with part_file(folder, saved.name, points - 1) as part:
+    with part_file(folder, saved.name, corners=points - 1) as part:
         _copy(saved.part_path, part)
         part.append(saved.time, position, **fields)
     return folder / f"{saved.name}.plate.vtkhdf", folder / f"{saved.name}.part.vtkhdf"

@@ -114,7 +114,7 @@ def write_results(
     check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
-        part_file(folder, case.name, position[0].size // 3 - 1, metadata) as part,
+        part_file(folder, case.name, metadata, position[0].size // 3 - 1) as part,
     ):
         for group, members in arrays.items():
             part.add_arrays(group, members)

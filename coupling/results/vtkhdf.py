@@ -158,7 +158,7 @@ def plate_file(
 
 
 def part_file(
-    folder: str | Path, name: str, corners: int = 0, metadata: Metadata = NONE
+    folder: str | Path, name: str, metadata: Metadata = NONE, corners: int = 0
 ) -> AbstractContextManager[StepsFile]:
     """Write `NAME.part.vtkhdf`, whose steps have a position and fields () or (3,); the rest is as in `plate_file`.
 
