@@ -198,8 +198,8 @@ def scene_of(run: SavedRun) -> Scene:
     """The scene of a run: all of its surface, or a window around a path that is short beside it."""
     path, then = _path(run)
     face, heading = run.case.part.face, run.rows.heading
-    corners = [] if face is None or heading is None else [face.outline(path[k], heading[k]) for k in (0, -1)]
-    frame, window = _frame(run, np.concatenate([path, *corners]))
+    outlines = [] if face is None or heading is None else [face.outline(path[k], heading[k]) for k in (0, -1)]
+    frame, window = _frame(run, np.concatenate([path, *outlines]))
     low, high = frame + AROUND * extent(frame) * np.array([[-1.0], [1.0]])
     inside = ((run.points >= low) & (run.points <= high)).all(axis=1)
     used, corners = np.unique(run.triangles[inside[run.triangles].any(axis=1)], return_inverse=True)
