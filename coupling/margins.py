@@ -30,7 +30,7 @@ from particle.friction import Contact
 FloatArray = NDArray[np.float64]
 
 PER_STROKE: Final = 24  # moments in the shortest stroke
-LOSSES: Final = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE)  # that end a path
+LOSSES: Final = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE, EventKind.TIPS)  # that end a path
 MAX_NAMED: Final = 1000  # events whose actuators are sought
 MAX_SHARES: Final = 500_000  # of actuators at places that are found at once: 30 MB
 

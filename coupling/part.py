@@ -83,7 +83,7 @@ def build_point(case: Case, position: tuple[float, float] | None = None) -> Micr
     """The same of a part without a footprint; raises ValueError for one that has one."""
     p, place = case.part, position or case.part.position
     if p.face is not None:
-        raise ValueError("part.footprint must not be given here: only paths and margins are found for it")
+        raise ValueError("part.footprint must not be given here, where parts are points")
     return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height)
 
 
@@ -140,20 +140,24 @@ def bent_under(case: Case, outline: Outline, surface: SurfaceMotion, trajectory:
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places, times = trajectory.position[on_plate], trajectory.time[on_plate]
-    worst, curvature = np.zeros((2, 2)), -1.0
+    headings = np.zeros(len(trajectory.time)) if trajectory.heading is None else trajectory.heading
+    worst, curvature, heading = np.zeros((2, 2)), -1.0, 0.0
     for start in range(0, len(times), BLOCK):
         hessians = surface.evaluate_along(places[start : start + BLOCK], times[start : start + BLOCK]).hessian
         sizes = np.abs(np.linalg.eigvalsh(hessians)).max(axis=1)
         if sizes.max() > curvature:
             worst, curvature = hessians[sizes.argmax()], float(sizes.max())
+            heading = float(headings[on_plate][start + sizes.argmax()])
     if not isinstance(law := friction_of(case), KogutEtsionCase):
         return Bent(size * curvature, None, None, None)
     face = case.part.face or Footprint.rectangle(size, size)
     sag = 0.5 * curvature * face.reach**2 / law.roughness
     if not FLAT < sag <= MAX_SAG:
         return Bent(size * curvature, sag, None, None)
-    rough = KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
-    flat, bent = rough.on_face(face), rough.on_face(face, worst)
+    rough = friction_law(law)
+    assert isinstance(rough, KogutEtsion)
+    turn = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
+    flat, bent = rough.on_face(face), rough.on_face(face, turn.T @ worst @ turn)
     ratio = float(bent.friction_limit(0.0)) / float(flat.friction_limit(0.0))
     return Bent(size * curvature, sag, ratio, bent.pull_off / flat.pull_off)
 

@@ -71,7 +71,7 @@ class PlateFigures:
     can_vibrate: bool  # likewise with inertia
     largest_slope: float
     largest_strain: float | None  # of either face, in linear theory by bending and tension; None: too many actuators
-    top_face_share: float | None  # what top face and centre of mass add to the part's pull over the rest; None: no rest
+    top_face_share: float | None  # what top face and centre of mass add to a point's pull over the rest; None: no rest
     tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
     tips: bool  # whether it is more than 1, and the friction law states the adhesion
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
@@ -124,7 +124,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         can_vibrate=not scene.has_inertia and _goes_with(case, "plate.inertia", True),
         largest_slope=slope,
         largest_strain=strain,
-        top_face_share=top_face_share(contact),
+        top_face_share=None if case.part.face else top_face_share(contact),
         tipping=tipping,
         tips=tipping is not None and tipping > 1 and states_adhesion(friction),
         first_frequency=first,

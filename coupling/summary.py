@@ -36,7 +36,7 @@ class Summary:
     end_position: tuple[float, float]  # m
     end_heading: float | None  # rad, counter-clockwise, whole turns counted; None: a point, as for the next two
     turned: float | None  # rad, from start to end
-    pressure_margin: float | None  # the least pressure under the part over the mean, along the path
+    least_pressure: float | None  # under the part over the mean, adhesion included: 0 where an edge lifts; None: no law
     distance: float  # m, from start to end
     path_length: float  # m
     time_stuck: float  # s
@@ -106,7 +106,7 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
         duration=case.run.duration,
         at_rest_since=trajectory.at_rest_since,
         end_position=(float(trajectory.position[-1, 0]), float(trajectory.position[-1, 1])),
-        **_face(trajectory),
+        **_face(trajectory, friction),
         distance=trajectory.distance,
         path_length=trajectory.path_length,
         time_stuck=trajectory.time_in(State.STICK),
@@ -138,13 +138,17 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
     return summary
 
 
-def _face(trajectory: Trajectory) -> dict[str, float | None]:
+def _face(trajectory: Trajectory, friction: Contact) -> dict[str, float | None]:
     """The figures of a part with a face."""
-    heading, pressure = trajectory.heading, trajectory.pressure_margin
-    if heading is None or pressure is None:
-        return dict.fromkeys(("end_heading", "turned", "pressure_margin"))
-    turned = float(heading[-1] - heading[0])
-    return {"end_heading": float(heading[-1]), "turned": turned, "pressure_margin": float(np.nanmin(pressure))}
+    heading, margin, load = trajectory.heading, trajectory.pressure_margin, trajectory.normal_force
+    if heading is None or margin is None:
+        return dict.fromkeys(("end_heading", "turned", "least_pressure"))
+    least = None
+    if math.isfinite(friction.pull_off):
+        presses = load + friction.pull_off > 0
+        ratios = (margin * load + friction.pull_off)[presses] / (load + friction.pull_off)[presses]
+        least = float(np.nanmin(ratios)) if np.isfinite(ratios).any() else None
+    return {"end_heading": float(heading[-1]), "turned": float(heading[-1] - heading[0]), "least_pressure": least}
 
 
 def _frames_per_cycle(case: Case, scene: Scene, end: float) -> float | None:

@@ -166,7 +166,10 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
         memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
         return face_states(surface.record, request, face, memory, rows)
 
-    return _trajectory(surface, request, computed, sampler, contact, face)
+    trajectory = _trajectory(surface, request, computed, sampler, contact, face)
+    if trajectory.outcome is Outcome.STUCK:
+        trajectory = replace(trajectory, future=partial(_face_stays, surface, request, face, trajectory))
+    return trajectory
 
 
 def find_path_by_steps(
@@ -195,16 +198,35 @@ def _computed(record: PathRecord, memory: Any) -> Computed:
     )
 
 
+def _face_stays(surface: SurfaceMotion, request: Request, face: Face, trajectory: Trajectory) -> bool | None:
+    """As `_stays`, of a part with a face."""
+    assert trajectory.heading is not None
+    end = _end_of_change(surface, request)
+    if end is None:
+        return None
+    start = np.array([*trajectory.position[-1], trajectory.heading[-1], *np.zeros(5)])
+    rest = request._replace(start=start, mode=int(Mode.RESTING), begin=request.duration, until=end, duration=end)
+    memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
+    record = march_body(surface.record, rest, face, memory, new_record())
+    return bool(memory.now[0].verdict == Verdict.GOES_ON and record.lengths[0]["events"] == 0)
+
+
+def _end_of_change(surface: SurfaceMotion, request: Request) -> float | None:
+    """Until when [s] a resting part is looked at to see that it stays; None: that is not known."""
+    after = None if (surface.drives.jump[:, 0] > 0).any() else horizon(surface.drives, request.duration)
+    if after is None:
+        return None
+    return after + (0.0 if np.isinf(surface.drives.repeats).any() else 1.0)  # 1 s, to look at the surface at rest
+
+
 def _stays(surface: SurfaceMotion, request: Request, pairs: Pairs, x: float, y: float) -> bool | None:
     """Whether a part that rests at (x, y) [m] at the end of the path does so for ever.
 
     None where that is not known: as for `horizon`, or where a drive's velocity jumps.
     """
-    after = None if (surface.drives.jump[:, 0] > 0).any() else horizon(surface.drives, request.duration)
-    if after is None:
+    if (end := _end_of_change(surface, request)) is None:
         return None
-    still = 0.0 if np.isinf(surface.drives.repeats).any() else 1.0  # s, to look at the surface at rest
-    start, end = np.array([x, y, *np.zeros(6)]), after + still
+    start = np.array([x, y, *np.zeros(6)])
     rest = request._replace(start=start, mode=int(Mode.RESTING), begin=request.duration, until=end, duration=end)
     memory = _memory(surface.record, pairs, np.zeros(1, dtype=np.int64))
     march(surface.record, rest._replace(only_rests=True), pairs, memory, new_record())

@@ -147,9 +147,20 @@ def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list
     wrong = []
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of {of} must lie on the plate; got {tuple(part.position)!r} m")
+    elif isinstance(part, Body) and not _least_gap(surface, part) >= 0:
+        beyond = f"it reaches {-_least_gap(surface, part):.3g} m beyond the rim"
+        wrong.append(f"Input position of {of} must put all of the part on the plate; {beyond}")
     if surface.turning_base and not isinstance(part, Body):
         wrong.append(f"Input {of} must be a Body on a base that turns; got a Micropart")
     return wrong
+
+
+def _least_gap(surface: SurfaceMotion, part: Body) -> float:
+    """How far [m] the face's nearest point is inside the rim; negative beyond it."""
+    if part.footprint.radius:
+        return float(rim_gap(surface.record, *map(float, part.position)) - part.footprint.radius)
+    corners = part.footprint.outline(part.position, part.heading).tolist()
+    return min(float(rim_gap(surface.record, x, y)) for x, y in corners)
 
 
 def _face_faults(scheme: str, after_detachment: str) -> list[str]:

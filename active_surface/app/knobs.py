@@ -100,8 +100,6 @@ def changes_of(case: Case, path: str, text: str) -> dict[str, Any]:
     changes = {path: value}
     if path == "friction.plasticity_index" and getattr(case.friction, "preset", None):
         changes = {"friction.preset": None, **changes}  # which sets the index
-    if path == "part.mass" and case.part.density is not None:
-        changes = {"part.density": None, **changes}  # which sets the mass
     return changes
 
 

@@ -156,6 +156,9 @@ def disturbed(case: Case, changes: Sequence[Change]) -> Case:
             actuators[int(keys[0])] = _changed(actuators[int(keys[0])], keys[1:], change)
         else:
             tables[str(head)] = _changed(tables[str(head)], keys, change)
+    part = tables["part"]
+    if part.face is not None:  # whose mass, height and outline follow from its fields
+        tables["part"] = type(part)(**{key: getattr(part, key) for key in part.model_fields_set})
     return case.model_copy(update={**tables, "actuators": tuple(actuators), "source": None})
 
 

@@ -50,7 +50,9 @@ def off_the_line(
 
 
 def _keeps(case: Case, line: Direction, movers: Sequence[int]) -> bool:
-    """Whether the part lies on a line through the centre and nothing pushes it off."""
+    """Whether the part lies on a line through the centre and nothing pushes it off, as its face may."""
+    if case.part.face is not None:
+        return False
     gravity = case.run.gravity if isinstance(case.run.gravity, tuple) else (0.0, 0.0, 0.0)
     every = np.array([actuator.position for actuator in case.actuators])
     farthest = float(np.hypot(*np.array([case.part.position, *every]).T).max())

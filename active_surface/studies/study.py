@@ -165,7 +165,7 @@ def contact_of(friction: FrictionCase) -> Contact | str:
 
 
 def start_faults(case: Case, starts: FloatArray) -> list[list[str]]:
-    """For each start (n, 2) [m] what is wrong with it, nothing where it is on the plate."""
+    """For each start (n, 2) [m] what is wrong with it; nothing: it is on the plate, which a face may yet overhang."""
     if not isinstance(case.plate, PlateCase):
         return [[] for _ in starts]
     mesh = case.plate.coarse_mesh

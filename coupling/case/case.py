@@ -76,6 +76,8 @@ class Case(CaseTables):
         if wrong:
             must = 'must give values by the paths of their fields, such as {"part.mass": "3 ng"}'
             raise InputError("vary", [("changes", f"{must}; got {quoted(wrong[0])}")])
+        if "part.mass" in changes and "part.density" not in changes and self.part.density is not None:
+            changes = {"part.density": None, **changes}  # in place of which there is a mass
         tables: dict[str, Any] = {key: getattr(self, key) for key in CaseTables.model_fields}
         lattice, alone = None, len(self.actuators)
         if any(path.split(".")[0] == "lattice" for path in changes):

@@ -87,7 +87,10 @@ def _face(tables: CaseTables) -> Iterator[Mistake]:
     if run.after_detachment == "fly":
         yield ("run", "after_detachment"), 'must be "stop" with a footprint in [part]; got "fly"'
     if isinstance(friction, KogutEtsionCase) and "contact_area" in stated(friction):
-        yield ("friction", "contact_area"), "must not be given with a footprint in [part], whose area it is"
+        yield (
+            ("friction", "contact_area"),
+            "must not be given with a footprint in [part], which has an area",
+        )
 
 
 def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:
@@ -146,9 +149,9 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
             yield at, must_be_inside(gap, mesh)
         elif at[0] == "part" and (face := tables.part.face) is not None:
             corners = face.outline(tables.part.position, tables.part.heading)
-            if (gap := float(mesh.outline.gap(corners).min())) < 0:
-                must = "must have all of the part on the plate"
-                yield at, f"{must}; got a part that reaches {length_text(-gap)} beyond the rim"
+            if (gap := gap - face.radius if face.radius else float(mesh.outline.gap(corners).min())) < 0:
+                beyond = f"got one that reaches {length_text(-gap)} beyond the rim"
+                yield at, f"must put all of the part on the plate; {beyond}"
     for one, other in _shared(list(places.values())[:-1], least):
         first = location_text(("actuators", one, "position"))
         if one >= alone:

@@ -23,7 +23,7 @@ POINT = {False: 10.5, True: 27.0}  # bytes of a step at a point of the plate, co
 
 def frame_times(case: Case, scene: Scene, end: float) -> FloatArray:
     """The times [s] of the result files' steps, from 0 to the end of the path."""
-    return np.linspace(0, end, case.run.frames or _enough(scene, end))
+    return np.unique(np.linspace(0, end, case.run.frames or _enough(scene, end)))  # one where the path ends at once
 
 
 def _enough(scene: Scene, end: float) -> int:

@@ -75,11 +75,12 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
 
 
 def _turn(s: Summary) -> list[tuple[str, str]]:
-    """How far a part with a face has turned, and how evenly it stands."""
+    """How far a part with a face has turned, and how evenly it presses."""
     if s.end_heading is None or s.turned is None:
         return []
     turned, heading = math.degrees(s.turned), math.degrees(s.end_heading)
-    return [("turn", f"{turned:+.4f} degrees, to a heading of {heading:.4f} degrees")]
+    least = "" if s.least_pressure is None else f"; least pressure under the part {s.least_pressure:.3g} of the mean"
+    return [("turn", f"{turned:+.4f} degrees, to a heading of {heading:.4f} degrees{least}")]
 
 
 def _ended(s: Summary) -> str:
@@ -227,8 +228,6 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
-    if s.pressure_margin is not None:
-        rows.append(("", f"least pressure under the part {s.pressure_margin:.3g} times the mean (0: an edge lifts)"))
     if s.tipping:
         unless = ", if nothing adheres" if s.tipping > 1 and not s.tips else ""
         rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size{unless}"))

@@ -175,10 +175,10 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
             f"{MAX_CURVATURE}."
         )
     if s.part_sag_over_roughness is not None and s.part_sag_over_roughness > FLAT:
-        bent = "Bent so, only a few asperities touch."
+        bent = "On a plate bent as much only a few asperities touch."
         if s.bent_friction is not None and s.bent_pull_off is not None:
             friction = f"{s.bent_friction:.2g} times the friction at zero load"
-            bent = f"Bent so, it has {friction} and {s.bent_pull_off:.2g} times the pull-off force."
+            bent = f"Bent as much, it has {friction} and {s.bent_pull_off:.2g} times the pull-off force."
         yield (
             f"The plate sags under the part by up to {s.part_sag_over_roughness:.2g} times the roughness; the contact "
             f"is that of flat faces, which holds up to about {FLAT}. {bent}"

@@ -110,7 +110,7 @@ def write_results(
         of_part = {name: np.repeat(values[:, None], position.shape[1], axis=1) for name, values in of_part.items()}
     arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(scene, result.loads))
     step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
-    step_size = sum(values.nbytes for values in step.values()) + PART_STEP
+    step_size = sum(values.nbytes for values in step.values()) + PART_STEP * position[0].size // 3
     check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
@@ -177,6 +177,8 @@ def _arrays(
         "actuator": actuators,
         "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
     }
+    if trajectory.heading is not None:
+        events["heading"] = np.array([event.heading for event in trajectory.events], float)
     for key in ("time", "speed", "load"):
         events[key] = np.array([getattr(event, key) for event in trajectory.events], float)
     return {

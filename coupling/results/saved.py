@@ -46,7 +46,7 @@ FloatArray = NDArray[np.float64]
 TIMES = "VTKHDF/Steps/Values"
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
-LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED))
+LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED, Outcome.TIPPED))
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +193,8 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     """What both files hold, with their first k steps."""
     ours, fields, points = part["active_surface"], part["VTKHDF/PointData"], surface["points"]
     rows = Samples(**{name: rows[()] for name, rows in ours["rows"].items() if name in Samples._fields})
-    columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
+    numbered = (*EVENT_NUMBERS, "heading") if "heading" in ours["events"] else EVENT_NUMBERS
+    columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *numbered, EVENT_PLACE))
     texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
     step = checked_count("NumberOfPoints", part["VTKHDF/NumberOfPoints"][0])  # of which the first is the middle
     end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())
@@ -207,7 +208,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
         position=part["VTKHDF/Points"][: k * step : step],
         **{name: fields[name][: k * step : step] for name in OF_PART},
         events=[
-            Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(EVENT_NUMBERS, numbers, strict=True)))
+            Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(numbered, numbers, strict=True)))
             for kind, *numbers, place in zip(*columns, strict=True)
         ],
         rows=rows,

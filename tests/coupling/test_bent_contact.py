@@ -16,12 +16,20 @@ CASE = {
     "run": {"duration": "1 ms"},
 }
 PATH = SimpleNamespace(position=np.array([[0.0, 0.0], [1e-4, 0.0]]), time=np.array([0.0, 1e-3]))
+POINT = SimpleNamespace(**vars(PATH), heading=None)
 EVERYWHERE = SimpleNamespace(gap=lambda places: np.ones(len(places)))
 
 
 def bent(xx, yy, **tables):
-    surface = polynomial_surface([[0, 0, yy / 2], [0, 0, 0], [xx / 2, 0, 0]], size=1e-3)
-    return bent_under(Case.model_validate(CASE | tables), EVERYWHERE, surface, PATH)
+    return bent_under(Case.model_validate(CASE | tables), EVERYWHERE, bowl(xx, yy), POINT)
+
+
+def bowl(xx, yy):
+    return polynomial_surface([[0, 0, yy / 2], [0, 0, 0], [xx / 2, 0, 0]], size=1e-3)
+
+
+def case_with(part):
+    return Case.model_validate(CASE | {"part": part})
 
 
 @pytest.mark.parametrize(
@@ -37,6 +45,15 @@ def test_friction_and_pull_off_fall_as_on_a_face_of_that_curvature(xx, yy, frict
     assert found.sag == pytest.approx(
         abs(xx) * 1e-8 / 4 / roughness
     )  # half the curvature times the half diagonal squared
+
+
+def test_the_curvature_is_that_along_the_face_s_own_axes():
+    long = {"footprint": "rectangle", "sides": ["200 um", "20 um"], "thickness": "20 um", "mass": "1 ug"}
+    part = long | {"position": ["0 um", "0 um"]}
+    path = SimpleNamespace(**vars(PATH), heading=np.full(2, np.pi / 2))
+    along, across = (bent_under(case_with(part), EVERYWHERE, bowl(xx, yy), path) for xx, yy in ((0, 60), (60, 0)))
+    plain = bent_under(case_with(part), EVERYWHERE, bowl(60, 0), SimpleNamespace(**vars(PATH), heading=np.zeros(2)))
+    assert along.friction == pytest.approx(plain.friction, rel=1e-6) and across.friction > 2 * along.friction
 
 
 def test_a_face_that_is_flat_enough_and_other_laws_have_no_bent_contact():

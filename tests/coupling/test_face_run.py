@@ -7,10 +7,11 @@ import h5py
 import numpy as np
 import pytest
 
+from active_surface.views import write_run_page
 from coupling import Case, InputError, read_run, run_case
 from coupling.part import build_friction, build_part
 from coupling.report import lines
-from particle import Body, Footprint, Micropart
+from particle import Body, EventKind, Footprint, Micropart
 
 TABLES = {
     "plate": {"shape": "platform", "motion": {"x": {"stroke": "0.4 um", "frequency": "500 Hz", "cycle": "cosine"}}},
@@ -115,8 +116,47 @@ def test_all_of_the_part_must_be_on_the_plate():
     plate |= {"poisson_ratio": 0.3}
     actuators = [{"position": ["0 um", "0 um"], "stroke": "1 um", "frequency": "100 Hz"}]
     part = TABLES["part"] | {"position": ["0 um", "260 um"]}
-    with pytest.raises(ValueError, match=r"must have all of the part on the plate; got a part that .* um beyond"):
-        Case.model_validate(TABLES | {"plate": plate, "actuators": actuators, "part": part})
+    wrong = refusal({"plate": plate, "actuators": actuators, "part": part})
+    assert wrong.startswith("part.position must put all of the part on the plate; got one that reaches ")
+
+
+def test_a_disc_is_not_over_the_rim_between_two_corners_of_its_drawing():
+    plate = {"shape": "disc", "radius": "300 um", "thickness": "5 um", "youngs_modulus": "169 GPa"}
+    plate |= {"poisson_ratio": 0.3}
+    actuators = [{"position": ["0 um", "0 um"], "stroke": "1 um", "frequency": "100 Hz"}]
+    turned = math.pi / 48  # half way between two
+    part = {"footprint": "disc", "radius": "50 um", "thickness": "20 um", "mass": "1 ug"}
+    part |= {"position": [2.5005e-4 * math.cos(turned), 2.5005e-4 * math.sin(turned)]}
+    assert refusal({"plate": plate, "actuators": actuators, "part": part}).startswith("part.position must put all of")
+
+
+def test_a_mass_takes_the_place_of_a_density():
+    assert case_of().vary({"part.mass": "1 ug"}).part.mass == pytest.approx(1e-9)
+    assert case_of().vary({"part.mass": "1 ug"}).part.density is None
+
+
+@pytest.mark.compiled
+def test_a_part_that_tips_is_drawn_and_read_back_as_lost(tmp_path):
+    shaken = TABLES["plate"] | {"motion": {"x": {"stroke": "20 um", "frequency": "500 Hz", "cycle": "cosine"}}}
+    high = TABLES["part"] | {"thickness": "300 um", "spin": "0 rad/s"}
+    case = Case.model_validate(
+        TABLES | {"plate": shaken, "part": high, "friction": {"model": "coulomb", "coefficient": 1}}
+    )
+    result = run_case(case, output=tmp_path)
+    assert result.summary.outcome == "tipped" and result.files[-1].name == "face.png"
+    assert result.summary.least_pressure == pytest.approx(0, abs=1e-6)
+    saved = read_run(tmp_path / "face")
+    assert saved.loss.kind is EventKind.TIPS and saved.loss.heading == result.trajectory.events[-1].heading
+    write_run_page(saved, tmp_path / "face.html")
+    assert "tipped" in (tmp_path / "face.html").read_text()
+
+
+@pytest.mark.compiled
+def test_a_part_that_rests_on_a_still_plate_stays():
+    still = run_case(case_of().vary({"plate.motion": {"x": {"stroke": "0.4 um", "frequency": "500 Hz", "cycles": 1}}}))
+    assert still.trajectory.stays and "do not move it again" in still.trajectory.sentence
+    again = run_case(case_of().vary({"plate.motion": {"x": {"stroke": "8 um", "frequency": "90 Hz", "cycles": 3}}}))
+    assert not again.trajectory.stays or again.trajectory.outcome != "stuck"
 
 
 @pytest.mark.compiled
@@ -125,7 +165,7 @@ def test_a_run_turns_and_says_so(tmp_path):
     path, summary = result.trajectory, result.summary
     assert abs(path.heading[-1] - path.heading[0]) > 0.01
     assert summary.turned == path.heading[-1] - path.heading[0] and summary.end_heading == path.heading[-1]
-    assert summary.pressure_margin == pytest.approx(path.pressure_margin.min())
+    assert summary.least_pressure == pytest.approx(path.pressure_margin.min())  # nothing adheres
     assert dict(lines(summary))["turn"].startswith(f"{math.degrees(summary.turned):+.4f} degrees, to a heading of ")
     # At rest, after its spin: the largest acceleration over that which friction bears, without a torque.
     largest = 2e-7 * (2 * math.pi * 500) ** 2 / (0.3 * 9.80665)

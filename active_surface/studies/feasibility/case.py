@@ -112,7 +112,7 @@ def feasibility(
     if not case.actuators:
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
     if case.part.face is not None:
-        raise ValueError("Input case of feasibility must have a part without a footprint, whose rest it looks at")
+        raise ValueError("Input case of feasibility must have a part without a footprint: it is found for points")
     if not frequency:
         raise ValueError("Input case of feasibility must have a drive that moves; got none")
     if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):
