@@ -94,7 +94,8 @@ def compose(figure: Figure, portrait: Portrait) -> None:
 def _spans(portrait: Portrait) -> list[Span]:
     """The spans of time that are drawn [s]: all, and of many cycles some around the decisive moment."""
     times = portrait.samples.time
-    end, drives = float(times[-1]), (*portrait.drives.values(), *portrait.base)
+    end = float(times[-1]) or portrait.case.run.duration  # of a part that is lost at once
+    drives = (*portrait.drives.values(), *portrait.base)
     moving = [velocity[velocity != 0] for velocity in (drive.evaluate(times)[1] for drive in drives)]
     turns = [np.count_nonzero(np.diff(np.sign(velocity)) > 1) for velocity in moving]
     if max(turns, default=0) <= MANY:
