@@ -3,7 +3,7 @@
 
 const delays = []; // ms from an input to its path on the screen, the latest thousand
 const RUNS = { now: null, saved: null };
-let link = null, asked = 0, onTheWay = null, next = null, gesture = 0, gestureOf = null, caseData = null, runData = null, searching = false;
+let link = null, asked = 0, onTheWay = null, next = null, gesture = 0, gestureOf = null, caseData = null, runData = null, searching = false, noteTimer = 0;
 
 function connect() {
   const address = new URL("socket", location.href);
@@ -126,7 +126,8 @@ const TAKES = {
     element("note").hidden = false;
     element("note").classList.toggle("care", !good);
     element("note").textContent = text;
-    setTimeout(() => { element("note").hidden = true; }, 8000);
+    clearTimeout(noteTimer); // of an older note
+    noteTimer = setTimeout(() => { element("note").hidden = true; }, 8000);
   },
   picture({ name, bytes }) {
     const data = Uint8Array.from(atob(bytes), (letter) => letter.charCodeAt(0));

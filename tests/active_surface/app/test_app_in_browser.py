@@ -94,7 +94,7 @@ def test_the_screen_shows_what_a_run_of_the_saved_case_gives(opened):
     browser.find_element(By.ID, "save-now").click()
     wait(lambda: browser.find_element(By.ID, "save-replace").is_displayed())
     browser.find_element(By.ID, "save-replace").click()
-    wait(lambda: "Saved" in browser.find_element(By.ID, "note").text)
+    wait(lambda: "Saved" in browser.find_element(By.ID, "note").get_attribute("textContent"))
     assert path.read_text().startswith("# Mine.\n") and '"410 Hz"' in path.read_text()
     command = [sys.executable, "-m", "active_surface", "run", str(path), "--output", str(path.parent)]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
