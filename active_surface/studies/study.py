@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, Final
 
 from active_surface.arrays import FloatArray
@@ -57,9 +57,12 @@ class Study:
         """A hash of all that its numbers depend on; labels, titles and what is drawn are no part of it."""
         return _hash(self.traits)
 
-    @property
+    @cached_property
     def traits(self) -> dict[str, str]:
-        """Hashes of what its numbers depend on: case, the files that it reads, points and versions."""
+        """Hashes of what its numbers depend on: case, the files that it reads, points and versions.
+
+        Found once, as pydantic drops a Ctrl-C that arrives while it writes a case.
+        """
         return {
             "case": _hash(self._case_numbers()),
             "files of the case": _hash([hashlib.sha256(file).hexdigest() for file in files_of(self.case).values()]),

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from common import count, percent, quantity
 from coupling.case import INERTIA, VON_KARMAN
 from coupling.outlook import MAX_FREQUENCY
+from coupling.part import FLAT
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.summary import PlateSummary, Summary
 
 # The model holds to about a per cent up to these.
 MAX_DEFLECTION = 0.2  # of the thickness
 MAX_LINEAR_ERROR = 0.01  # of the path: beyond it a run names the theory that has stretching
-FLAT = 0.3  # sags over the roughness: contact as on flat faces
 MAX_CURVATURE = 0.1  # of one over the part's size
 MAX_QUASI_STATIC_ERROR = 0.05  # of the acceleration
 MAX_QUASI_STATIC_SHARE = 0.01  # of the acceleration: beyond it a run names the line that has inertia

@@ -116,7 +116,7 @@ def test_the_tutorial_prints_what_its_commands_print(folder):
             shown = shown[:4]
         elif name == "corner":
             (end,) = re.findall(r"end +\((.+), (.+)\) um at 60.0000 ms", printed)
-            assert np.array(end, float) == pytest.approx(np.array([-38.832, -43.943]), abs=2e-3)  # um
+            assert np.array(end, float) == pytest.approx(np.array([-38.8320, -43.9434]), abs=4e-4)  # um, as it says
             shown = []
         assert [line for line in shown if line not in page] == []
 
