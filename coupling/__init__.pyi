@@ -35,7 +35,6 @@ from .outlook import (
 from . import advice as advice, borders as borders, report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, build_point as build_point
-from .part import friction_law as friction_law, friction_of as friction_of
 from .results import Output as Output
 from .run import (
     Rerun as Rerun,

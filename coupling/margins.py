@@ -71,20 +71,21 @@ class MarginCurves(NamedTuple):
 
 def margins_of(scene: Scene, path: PathLoads) -> Margins:
     """The margins of a run."""
-    trajectory, (ratios, loads) = path.trajectory, path.own
+    trajectory, (ratios, loads, _) = path.trajectory, path.own
     slip = largest(lambda times: _or_least(path.sampled(times)[0]), path.times, _or_least(ratios))
     load = largest(lambda times: _or_least(-path.sampled(times)[1]), path.times, _or_least(-loads))
     if len(path.slips):
         slip = Extreme(1.0, float(path.slips[0]))  # also where a blow makes it slip
     distance = Extreme((path.part.law.pull_off - load.value) / path.scale, load.time)
+    loss = float(path.sampled(np.array([load.time]))[2][0])
     if off := [event.time for event in trajectory.events if event.kind is EventKind.DETACHES]:
         distance = Extreme(0.0, off[0])  # also where a blow throws it off
     return Margins(
         slip=None if slip.value == -np.inf else _margin(scene, path, slip, EventKind.SLIPS),
         contact=None if distance.value == np.inf else _margin(scene, path, distance, EventKind.DETACHES),
-        pull_off=None if distance.value == np.inf else path.part.law.pull_off,
+        pull_off=None if distance.value == np.inf else path.part.law.pull_off - loss,
         scale=path.scale,
-        smallest_load=-load.value,
+        smallest_load=loss - load.value,
     )
 
 
@@ -120,20 +121,22 @@ class PathLoads:
         return pull_off if 0 < pull_off < np.inf else weight or part.mass
 
     @cached_property
-    def own(self) -> tuple[FloatArray, FloatArray]:
+    def own(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What `sampled` gives at `times`."""
         return self.sampled(self.times)
 
     @property
     def curves(self) -> MarginCurves:
         """The margins over time."""
-        slip, load = self.own
+        slip, load, _ = self.own
         pull_off = self.part.law.pull_off
         contact = (load + pull_off) / self.scale if np.isfinite(pull_off) else np.full(len(load), np.nan)
         return MarginCurves(self.times, slip, contact)
 
-    def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Pull over the friction limit, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
+
+        The load is that on a flat surface as far above pull-off, the third is what to add for the load itself.
 
         A part that begins to slip counts as stuck at that moment.
         """
@@ -143,7 +146,7 @@ class PathLoads:
         loads = np.where(samples.state == State.FLIGHT, np.nan, samples.normal_force)
         ratios = np.full(len(times), np.nan)
         ratios[stuck] = pull_ratios(self.part, loads[stuck], self.part.mass * samples.pull[stuck])
-        return ratios, loads
+        return ratios, loads - samples.bend_loss, samples.bend_loss
 
 
 def _margin(scene: Scene, path: PathLoads, extreme: Extreme, kind: EventKind) -> Margin:

@@ -18,6 +18,7 @@ from particle import (
     Footprint,
     FrictionTable,
     KogutEtsion,
+    LocalContact,
     Micropart,
     SurfaceMotion,
     Trajectory,
@@ -31,12 +32,13 @@ FloatArray = NDArray[np.float64]
 
 SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
 FLAT, MAX_SAG = 0.3, 100.0  # roughnesses: where the bent contact is found
+STEEP = 40.0  # roughnesses, up to which a local contact is exact to 1e-4
 BLOCK = 50_000  # rows of a path whose curvatures are found together: 20 MB
 
 
 def build_friction(case: Case) -> Contact:
     """The friction law between part and surface."""
-    return friction_law(friction_of(case))
+    return friction_law(friction_of(case), local_size(case))
 
 
 def friction_of(case: Case) -> FrictionCase:
@@ -47,16 +49,25 @@ def friction_of(case: Case) -> FrictionCase:
     return law
 
 
-@lru_cache(maxsize=64)
-def friction_law(law: FrictionCase) -> Contact:
-    """The friction law of a case's table; one that was made lately is not tabulated again."""
+def local_size(case: Case) -> float | None:
+    """The side [m] of a point under which the law of a rough contact is local; None: it is not."""
+    return case.footprint if case.part.local_contact else None
+
+
+@lru_cache(maxsize=256)
+def friction_law(law: FrictionCase, size: float | None = None) -> Contact:
+    """The friction law of a case's table; one that was made lately is not tabulated again.
+
+    size: as `local_size`.
+    """
     if isinstance(law, ConstantCase):
         return ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):
         return CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
     if isinstance(law, TableCase):
         return FrictionTable(law.loads or (), law.limits or (), law.static_ratio)
-    return KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
+    rough = KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
+    return rough if size is None else LocalContact(rough, size)
 
 
 def build_part(case: Case, position: tuple[float, float] | None = None) -> Micropart | Body:
@@ -100,7 +111,7 @@ def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float 
         return None
     if case.part.centre_height == 0:
         return 0.0
-    pressing = pressing_force(samples.normal_force, friction)
+    pressing = pressing_force(samples.normal_force - samples.bend_loss, friction)
     touching = pressing > 0  # neither in flight nor at pull-off, where friction ends as well
     forces = np.linalg.norm(samples.friction[touching], axis=1)
     shift = case.part.centre_height * forces / pressing[touching]

@@ -82,6 +82,7 @@ class PlateFigures:
     quasi_static_error: float | None  # relative, of the surface's acceleration; None: no density given, or it rings
     part_curvature: float | None  # part size times largest curvature on its path; None: size not given
     part_sag_over_roughness: float | None  # of the plate under the part's size there; None: no rough contact
+    local_contact: bool  # whether the contact follows the sag
     bent_friction: float | None  # limit at zero load of contact only where the surfaces meet, over that of a flat face
     bent_pull_off: float | None  # likewise; both None where the sag is small, or so large that few asperities touch
     part_sag: float  # m, the plate's deflection under the part's largest force
@@ -135,6 +136,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=bent and bent.curvature,
         part_sag_over_roughness=bent and bent.sag,
+        local_contact=case.part.local_contact,
         bent_friction=bent and bent.friction,
         bent_pull_off=bent and bent.pull_off,
         part_sag=sag,

@@ -20,6 +20,7 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "HermiteDrive",
     "Interrupted",
     "KogutEtsion",
+    "LocalContact",
     "Micropart",
     "Outcome",
     "Samples",

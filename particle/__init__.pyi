@@ -5,6 +5,7 @@ from .drives.table import AnyDrive as AnyDrive
 from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.face import FaceLaw as FaceLaw
+from .friction.local import LocalContact as LocalContact
 from .friction.table import FrictionTable as FrictionTable
 from .body.body import Body as Body
 from .footprint import Footprint as Footprint

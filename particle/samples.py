@@ -95,13 +95,14 @@ class ContactSamples(NamedTuple):
     normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
     normal_force: FloatArray  # (k,) N, net, along the normal
     friction: FloatArray  # (k, 3) N, on the part
-    pull: FloatArray  # (k,) m/s^2, along the surface, without friction; 0 in flight
+    pull: FloatArray  # (k,) m/s^2, along the surface, without friction, as on a flat surface; 0 in flight
     point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
     added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
     separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
     contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
     adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
     state: IntArray  # (k,) State
+    bend_loss: FloatArray  # (k,) N, by how much the surface's curvature lessens the pull-off force (`LocalContact`)
 
 
 def samples_of(rows: NDArray[Any], face: bool = False) -> Samples:
@@ -142,7 +143,7 @@ def contact_samples_of(rows: NDArray[Any], states: NDArray[Any], friction: Rough
     separations, contact_loads, adhesions = parts
     return ContactSamples(
         *(rows["time"], place, centre, normal, load, force, pull, of_point, added),
-        *(separations, contact_loads, adhesions, _states(rows)),
+        *(separations, contact_loads, adhesions, _states(rows), states["bend_loss"]),
     )
 
 

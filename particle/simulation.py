@@ -13,7 +13,7 @@ from particle.body import Body, Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
-from particle.friction import Contact
+from particle.friction import LOCAL, Contact
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
@@ -120,6 +120,9 @@ def simulate(
         )
     wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += part_faults(surface, part, type(part).__name__)
+    wrong += law_faults(part, friction)
+    if scheme == "paper" and friction.law.kind == LOCAL:
+        wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
     if wrong:
@@ -153,6 +156,13 @@ def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list
     if surface.turning_base and not isinstance(part, Body):
         wrong.append(f"Input {of} must be a Body on a base that turns; got a Micropart")
     return wrong
+
+
+def law_faults(part: Micropart | Body, friction: Contact) -> list[str]:
+    """What is wrong with a friction law for a part."""
+    if isinstance(part, Body) and friction.law.kind == LOCAL:
+        return ["Input friction must not be a LocalContact with a Body, whose pressure is linear or uniform"]
+    return []
 
 
 def _least_gap(surface: SurfaceMotion, part: Body) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from active_surface.arrays import FloatArray
 from active_surface.steering.robustness import Disturbance, disturbed
 from active_surface.studies import contact_of, start_faults
-from coupling import PathTask, build_drives, build_part, follow, friction_of, one_blas_thread
+from coupling import PathTask, build_drives, build_part, follow, one_blas_thread
 from coupling.case import ActuatorCase, Case
 from particle import Body, Micropart, Outcome, SurfaceMotion, Trajectory
 from particle.friction import Contact, ScaledFriction
@@ -41,7 +41,7 @@ class Paths:
         return trajectories
 
     def _contact(self, case: Case, factor: float) -> Contact:
-        contact = contact_of(friction_of(case))
+        contact = contact_of(case)
         if isinstance(contact, str):
             raise ValueError(contact)
         return contact if factor == 1.0 else ScaledFriction(contact, factor)

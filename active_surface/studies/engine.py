@@ -23,7 +23,6 @@ from coupling import (
     build_drives,
     build_part,
     follow_each,
-    friction_of,
     ground_key,
     one_blas_thread,
     silent,
@@ -148,7 +147,7 @@ class Engine:
         rows, tasks = [], []
         for (row, case), place, messages in zip(pairs, starts.tolist(), start_faults(first, starts), strict=True):
             records["start_x"][row], records["start_y"][row] = place
-            law = contact_of(friction_of(case))
+            law = contact_of(case)
             if isinstance(law, str) or isinstance(surface, str) or messages:
                 wrong[row] = [*messages, *(one for one in (law, surface) if isinstance(one, str))]
             else:

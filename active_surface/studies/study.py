@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, Final
 
 from active_surface.arrays import FloatArray
@@ -15,11 +15,10 @@ from active_surface.studies.axes import Axis
 from active_surface.studies.columns import Threshold
 from active_surface.studies.points import Points
 from coupling import PACKAGES as SHARED
-from coupling import answers_drives, build_drives, friction_law, friction_of
+from coupling import answers_drives, build_drives, build_friction
 from coupling import versions as versions_of
 from coupling.case import (
     Case,
-    FrictionCase,
     InputError,
     PlateCase,
     PlatformCase,
@@ -39,7 +38,6 @@ DEEP_OF_RUN: Final = (("run", "surface_tolerance"), ("run", "start"))
 """Keys of the run that change the surface."""
 THEORIES: Final = ("plate.theory", "plate.inertia")
 """Fields that decide whether a plate answers its drives."""
-LAWS: Final = 256  # kept
 
 
 @dataclass(frozen=True)
@@ -137,7 +135,7 @@ class Study:
         case = self.case_or_faults(self.points.values([k])[0])
         if isinstance(case, list):
             return case
-        law = contact_of(friction_of(case))
+        law = contact_of(case)
         (faults,) = start_faults(case, self.points.displacements([k]) + case.part.position)
         return [*faults, law] if isinstance(law, str) else faults
 
@@ -156,11 +154,10 @@ def is_deep(case: Case, axis: Axis) -> bool:
     return first[0] in ("plate", "lattice") or first in DEEP_OF_RUN or on_platform
 
 
-@lru_cache(LAWS)
-def contact_of(friction: FrictionCase) -> Contact | str:
-    """The friction law of a case's table, or what is wrong with it."""
+def contact_of(case: Case) -> Contact | str:
+    """The friction law of a case, or what is wrong with it."""
     try:
-        law = friction_law(friction)
+        law = build_friction(case)
         law.law  # noqa: B018  # made when it is first asked for
     except (ValueError, ArithmeticError) as error:
         return str(error)

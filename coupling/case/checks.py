@@ -76,8 +76,15 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
 
 
 def _face(tables: CaseTables) -> Iterator[Mistake]:
-    """Yield what does not go with a part that has a footprint, or none."""
+    """Yield what does not go with a part that has a footprint, or none, or with its local contact."""
     run, friction, face = tables.run, tables.friction, tables.part.face
+    if tables.part.local_contact and not isinstance(friction, KogutEtsionCase):
+        yield (
+            ("part", "local_contact"),
+            f'must be false with model = "{friction.model}" in [friction]',
+        )
+    if tables.part.local_contact and run.scheme == "paper":
+        yield ("run", "scheme"), 'must be "events" or "fixed" with local_contact = true in [part]; got "paper"'
     if face is None:
         if run.after_tipping == "ignore":
             yield ("run", "after_tipping"), 'must be "stop" without a footprint in [part]: a point does not tip'

@@ -91,6 +91,8 @@ class PartCase(Table):
     """How fast it turns at the start."""
     size: PositiveLength | None = Field(default=None, examples=["100 um"])
     """The side of a point's footprint, for the check of curvature; without it the root of the contact area."""
+    local_contact: bool = False
+    """Whether a rough contact follows its law point by point on the bent surface under that square."""
     squeeze: Force = Field(default=0.0, ge=0)
     """A constant force that presses it onto the surface, along the normal."""
     centre_height: Length = Field(default_factory=_middle, ge=0, examples=["50 um"])
@@ -118,6 +120,8 @@ class PartCase(Table):
             yield "corners", f"must be {_CORNERS}"
         if "thickness" not in given:
             yield "thickness", f"is missing; with a footprint it must be {expected['thickness']}"
+        if "local_contact" in given:
+            yield "local_contact", "must not be given with a footprint, whose pressure is linear or uniform"
         if "size" in given:
             yield "size", f"must not be given with a footprint, which has {OUTLINES[kind]}"
         same = "density" in given and stated and math.isclose(given["mass"], _mass(dict(given)), rel_tol=1e-9)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from common import count, percent, quantity
 from coupling.case import INERTIA, VON_KARMAN
 from coupling.outlook import MAX_FREQUENCY
-from coupling.part import FLAT
+from coupling.part import FLAT, STEEP
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.summary import PlateSummary, Summary
 
@@ -174,12 +174,18 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
             f"Part size times curvature reaches {s.part_curvature:.2g}; the point-part model holds up to about "
             f"{MAX_CURVATURE}."
         )
-    if s.part_sag_over_roughness is not None and s.part_sag_over_roughness > FLAT:
+    sag = s.part_sag_over_roughness
+    if sag is not None and s.local_contact and sag > STEEP:
+        yield (
+            f"The plate sags under the part by up to {sag:.2g} times the roughness; above {STEEP} a local contact is "
+            "exact to some per cent only."
+        )
+    elif sag is not None and not s.local_contact and sag > FLAT:
         bent = "On a plate bent as much only a few asperities touch."
         if s.bent_friction is not None and s.bent_pull_off is not None:
             friction = f"{s.bent_friction:.2g} times the friction at zero load"
             bent = f"Bent as much, it has {friction} and {s.bent_pull_off:.2g} times the pull-off force."
         yield (
-            f"The plate sags under the part by up to {s.part_sag_over_roughness:.2g} times the roughness; the contact "
+            f"The plate sags under the part by up to {sag:.2g} times the roughness; the contact "
             f"is that of flat faces, which holds up to about {FLAT}. {bent}"
         )

@@ -12,6 +12,7 @@ from particle.events.mechanics import (
     at_contact,
     by_centre,
     drag,
+    grip_at,
     inner,
     length,
     margin,

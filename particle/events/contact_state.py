@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.mechanics import Part, at_contact, length, pull, slip
+from particle.events.mechanics import Part, at_contact, grip_at, length, pull, slip
 from particle.events.record import Row
+from particle.friction import friction_limit
 from particle.jit import jit
 from particle.modes import Mode
 from particle.records import Record, record_type
@@ -31,9 +32,10 @@ class ContactState(Record):
     friction_x: float  # N, on the part
     friction_y: float
     friction_z: float
-    pull: float  # m/s^2, friction per kg that a part at rest needs
+    pull: float  # m/s^2, friction per kg that a part at rest needs, as on a flat surface
     point_pull: float  # m/s^2, the same on a point of the mid-plane
     added_pull: float  # m/s^2, the length of their difference
+    bend_loss: float  # N, by how much the surface's curvature lessens the pull-off force
 
 
 CONTACT_STATE = record_type(ContactState)
@@ -74,15 +76,25 @@ def contact_states(
             against = row.friction / state.pull if state.pull > 0.0 else 0.0
             d_x, d_y = -against * p_x, -against * p_y
         state.friction_x, state.friction_y, state.friction_z = d_x, d_y, d_x * f.w_x + d_y * f.w_y
+        limit, load = grip_at(f, part, row.load)
+        state.bend_loss = row.load - load
+        if state.bend_loss != 0.0 and limit > 0.0:
+            state.pull *= friction_limit(part.law, row.load) / limit
     return out
 
 
 @jit
 def rest_loads(points: FloatArray, part: Part) -> tuple[FloatArray, FloatArray]:
-    """Net loads N [N], and |K^-1 p|_M [m/s^2], of a part at rest at points of the surface (n, 49); (n,) each."""
+    """Net loads N [N], and |K^-1 p|_M [m/s^2], of a part at rest at points of the surface (n, 49); (n,) each.
+
+    As on a flat surface: as far above pull-off, and as near to slipping.
+    """
     loads, demands = np.zeros(len(points)), np.zeros(len(points))
     for n in range(len(points)):
         f = point_of(points[n])
         p = pull(f, 0.0, 0.0, part)
-        loads[n], demands[n] = p.normal, length(f, *at_contact(f, part, p.x, p.y))
+        limit, loads[n] = grip_at(f, part, p.normal)
+        demands[n] = length(f, *at_contact(f, part, p.x, p.y))
+        if loads[n] != p.normal and limit > 0.0:
+            demands[n] *= friction_limit(part.law, loads[n]) / limit
     return loads, demands

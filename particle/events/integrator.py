@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from particle.events.flight import MIN_JUMP, cross_jump, fly, take_off, velocity_jump
-from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, margin, pull, rest_pull, slip_speed
+from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, grip_at, margin, pull, rest_pull, slip_speed
 from particle.events.memory import Memory
 from particle.events.record import PathRecord, Row, fill_row, last_row, note, write
 from particle.events.request import Request
@@ -169,7 +169,8 @@ def _fly(surface: Surface, request: Request, memory: Memory) -> int:
     if event != NO_EVENT:
         f = surface_at(memory.local, motion.x, motion.y, now.time)
         # A surface that falls away as it is met is not held on to.
-        if pull(f, motion.v_x, motion.v_y, request.part).normal < -request.part.law.pull_off:
+        load = pull(f, motion.v_x, motion.v_y, request.part).normal
+        if grip_at(f, request.part, load).load < -request.part.law.pull_off:
             now.mode = Mode.FLYING
     return event
 

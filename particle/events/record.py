@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.mechanics import Motion, Part, energy, heading, pull, rest_pull, rising, velocity
-from particle.friction import friction_limit
+from particle.events.mechanics import Motion, Part, energy, grip_at, heading, pull, rest_pull, rising, velocity
 from particle.jit import device
 from particle.modes import Mode
 from particle.records import Record, new_records, record_type
@@ -90,7 +89,7 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
         v_x = v_y = 0.0
     row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, rising(f, v_x, v_y)
     row.load = pull(f, v_x, v_y, part).normal
-    row.friction = part.mass * a.demand if mode == Mode.RESTING else friction_limit(part.law, row.load)
+    row.friction = part.mass * a.demand if mode == Mode.RESTING else grip_at(f, part, row.load).limit
     row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)
 
 

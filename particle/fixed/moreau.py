@@ -23,12 +23,12 @@ from particle.events import (
     after_friction,
     by_centre,
     drag,
+    grip_at,
     inner,
     of_centre,
     pull,
     push,
 )
-from particle.friction import friction_limit
 from particle.jit import inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
@@ -40,12 +40,12 @@ def moreau_step(
 ) -> tuple[int, float, float, float]:
     """Velocity and energies after h [s] into `after`.
 
-    f: the surface in the middle of the step.  Returns what the part does then, the normal force [N], and the way [m] in
-    x and y over the second half of the step.
+    f: the surface in the middle of the step.  Returns what the part does then, the load [N] as on a flat surface, and
+    the way [m] in x and y over the second half of the step.
     """
     v_x, v_y = motion.v_x, motion.v_y
     p = pull(f, v_x, v_y, part)
-    limit = friction_limit(part.law, p.normal)
+    limit, load = grip_at(f, part, p.normal)
     c_x, c_y = of_centre(f, part, v_x, v_y)
     free_x, free_y = c_x + h * p.x, c_y + h * p.y
     largest = h * limit / part.mass
@@ -57,4 +57,4 @@ def moreau_step(
     after.v_x, after.v_y = by_centre(f, part, end_x, end_y)
     after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, part, lost_x, lost_y)
     after.dissipated = motion.dissipated + part.mass * inner(f, lost_x, lost_y, mean_x, mean_y)
-    return (Mode.SLIDING if slides else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y
+    return (Mode.SLIDING if slides else Mode.RESTING), load, 0.5 * h * after.v_x, 0.5 * h * after.v_y

@@ -1,6 +1,7 @@
 """Friction laws: the largest tangential force that a contact transmits under a net normal force."""
 
 from particle.friction.contact import (
+    LOCAL,
     Contact,
     FrictionLaw,
     ScaledFriction,
@@ -8,3 +9,4 @@ from particle.friction.contact import (
     friction_limits,
     friction_slope,
 )
+from particle.friction.grip import Grip, grip

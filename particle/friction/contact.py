@@ -14,7 +14,7 @@ from particle.checks import finite, not_negative, positive, refuse
 from particle.jit import device_no_arrays, jit
 from particle.types import FloatArray
 
-CONSTANT, COULOMB, TABLE, POINTS = 0, 1, 2, 3
+CONSTANT, COULOMB, TABLE, POINTS, LOCAL = 0, 1, 2, 3, 4
 
 
 class FrictionLaw(NamedTuple):
@@ -33,6 +33,10 @@ class FrictionLaw(NamedTuple):
     # Polynomials on each interval, highest power first. TABLE: (4, knots - 1), of ln Q over u, from the knot before.
     # POINTS: (6, points + 1), of Q [N] over the load, from the point before; below them all, from the first point.
     pieces: FloatArray
+    # LOCAL, with the table of a flat surface: see `grip`.
+    fold: float  # roughnesses, the separation at pull-off
+    per_area: FloatArray  # (intervals, 8) Pa, cubics of p - a and q, highest power first, over the separation
+    places: FloatArray  # (points + 1, 4) x^2/2, x y, y^2/2 over the roughness [m] and weights [m^2]; last the corner
 
 
 class Contact(Protocol):
@@ -159,6 +163,7 @@ def new_law(
         float(step),
         np.zeros(1) if loads is None else loads,
         np.zeros((4, 1)) if pieces is None else pieces,
+        *(0.0, np.zeros((1, 8)), np.zeros((1, 4))),
     )
 
 
@@ -267,13 +272,14 @@ class ScaledFriction:
     def law(self) -> FrictionLaw:
         law, factor = self.contact.law, self.factor
         pieces = law.pieces * factor
-        if law.kind == TABLE:
+        if law.kind in (TABLE, LOCAL):
             pieces = law.pieces + math.log(factor) * np.eye(len(law.pieces))[:, -1:]
         return law._replace(
             limit=law.limit * factor,
             coefficient=law.coefficient * factor,
             impact_coefficient=law.impact_coefficient * factor,
             pieces=pieces,
+            per_area=law.per_area * np.repeat([1.0, factor], 4),
         )
 
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:

@@ -34,7 +34,7 @@ HIGHEST, HEIGHTS = 8.0, 161  # roughnesses, of the face over the highest point b
 TURNS, SETTLED, LONGEST = 200, 1e-13, 0.25  # Newton steps of the tilt, in roughnesses at the farthest point
 
 
-class LocalContact(Protocol):
+class SeparationLaw(Protocol):
     """A law of surfaces at a separation, for a nominal area."""
 
     @property
@@ -51,7 +51,7 @@ class LocalContact(Protocol):
 
 
 @cache
-def per_area(contact: LocalContact) -> CubicSpline:
+def per_area(contact: SeparationLaw) -> CubicSpline:
     """p - a and q [Pa] of a contact, two columns, over ln(1 + (d - LEAST)/STRETCH)."""
     from scipy.interpolate import CubicSpline  # here, because other laws do without it
 
@@ -67,7 +67,7 @@ def per_area(contact: LocalContact) -> CubicSpline:
 class FaceLaw:
     """The contact of a flat face with a surface of constant curvature; made by `KogutEtsion.on_face`."""
 
-    def __init__(self, contact: LocalContact, footprint: Footprint, hessian: ArrayLike) -> None:
+    def __init__(self, contact: SeparationLaw, footprint: Footprint, hessian: ArrayLike) -> None:
         bend = np.array(hessian, dtype=float)
         rounding = 1e-9 * np.abs(bend).max(initial=0.0)  # of one that was turned into the face's axes
         if bend.shape != (2, 2) or not np.isfinite(bend).all() or abs(bend[0, 1] - bend[1, 0]) > rounding:

@@ -113,6 +113,8 @@ def feasibility(
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
     if case.part.face is not None:
         raise ValueError("Input case of feasibility must have a part without a footprint: it is found for points")
+    if case.part.local_contact:
+        raise ValueError("Input case of feasibility must have part.local_contact = false: surfaces are flat there")
     if not frequency:
         raise ValueError("Input case of feasibility must have a drive that moves; got none")
     if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):

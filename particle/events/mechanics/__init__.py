@@ -20,6 +20,7 @@ from particle.events.mechanics.equations import (
     drag,
     energy,
     energy_at_rest,
+    grip_at,
     length,
     margin,
     of_centre,

@@ -25,6 +25,7 @@ from particle.events.mechanics.equations import (
     at_centre,
     at_contact,
     drag,
+    grip_at,
     length,
     over_plane,
     pull,
@@ -36,7 +37,6 @@ from particle.events.mechanics.parallel import (
     normal_bend_along,
     stretch_rate,
 )
-from particle.friction import friction_limit
 from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
@@ -52,7 +52,7 @@ class RestPull(NamedTuple):
     d_y: float
     n_x: float
     n_y: float
-    load: float  # N
+    load: float  # N, as on a flat surface
 
 
 class Heading(NamedTuple):
@@ -82,8 +82,8 @@ def rest_pull(f: SurfacePoint, part: Part) -> RestPull:
     demand = length(f, a_x, a_y)
     d_x, d_y = (a_x / demand, a_y / demand) if demand > 0.0 else (1.0 / length(f, 1.0, 0.0), 0.0)
     n_x, n_y = _turned_left(f, d_x, d_y)
-    limit = friction_limit(part.law, p.normal) / part.mass
-    return RestPull(demand, limit, d_x, d_y, n_x, n_y, p.normal)
+    limit, load = grip_at(f, part, p.normal)
+    return RestPull(demand, limit / part.mass, d_x, d_y, n_x, n_y, load)
 
 
 @device_no_arrays
@@ -209,12 +209,12 @@ def _raised_heading(
     step = 1e-6 * local.frame[0].unit
     g = surface_at(local, x + step * v_x, y + step * v_y, time + step)
     ahead = pull(g, 0.0, 0.0, part)
-    limit = friction_limit(part.law, ahead.normal) / part.mass
+    limit = grip_at(g, part, ahead.normal).limit / part.mass
     _, g_x, g_y = first_slip(g, mobility(g, part), *at_contact(g, part, ahead.x, ahead.y), limit)
     turning_rate = inner(f, n_x, n_y, (g_x - e_x) / step, (g_y - e_y) / step)
     if u > 0.0:
         fast = pull(f, v_x, v_y, part)
-        limit = friction_limit(part.law, fast.normal) / part.mass
+        limit = grip_at(f, part, fast.normal).limit / part.mass
         a_x, a_y = _contact_acceleration(f, part, k, fast, v_x, v_y, limit * e_x, limit * e_y)
         turning_rate -= inner(f, n_x, n_y, a_x, a_y) / u
     across_x, across_y = moved(k, n_x, n_y)
@@ -252,7 +252,7 @@ def _direction(u: float, h: Heading) -> tuple[float, float]:
 
 @inlined
 def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion) -> float:
-    """The rate of a motion on the manifold, v_x of which is u, into `rate`; returns the normal force [N].
+    """The rate of a motion on the manifold, v_x of which is u, into `rate`; returns the load [N] as on a flat surface.
 
     f: the surface at `motion` and `time`.
     """
@@ -261,7 +261,7 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
     d_x, d_y = _direction(u, h)
     v_x, v_y = over_plane(f, part, u * d_x, u * d_y)
     p = pull(f, v_x, v_y, part)
-    limit = friction_limit(part.law, p.normal)
+    limit, load = grip_at(f, part, p.normal)
     climb = d_x * f.w_x + d_y * f.w_y
     rate.x, rate.y = v_x, v_y
     if part.centre > 0.0 or local.frame[0].in_plane > 0:
@@ -281,4 +281,4 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
     rate.v_y = 0.0
     rate.work = push(f, part, p.normal) - limit * drag(f, part, *at_centre(f, part, d_x, d_y))
     rate.dissipated = limit * u
-    return p.normal
+    return load

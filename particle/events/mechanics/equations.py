@@ -39,7 +39,7 @@ from particle.events.mechanics.parallel import (
     to_height,
     unstretched,
 )
-from particle.friction import FrictionLaw, friction_limit
+from particle.friction import FrictionLaw, Grip, grip
 from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
@@ -157,10 +157,10 @@ def length(f: SurfacePoint, x: float, y: float) -> float:
 
 @inlined
 def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> float:
-    """The rate of a sliding part's motion into `rate`, with f at (x, y); returns the normal force [N]."""
+    """The rate of a sliding part's motion into `rate`, with f at (x, y); returns the load [N] as on a flat surface."""
     v_x, v_y = motion.v_x, motion.v_y
     p = pull(f, v_x, v_y, part)
-    limit = friction_limit(part.law, p.normal)
+    limit, load = grip_at(f, part, p.normal)
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
     k_x, k_y = slip(f, part, v_x, v_y)
     q_x, q_y = at_centre(f, part, slow * k_x, slow * k_y)
@@ -168,7 +168,13 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     rate.v_x, rate.v_y = by_centre(f, part, p.x - q_x, p.y - q_y)
     rate.work = push(f, part, p.normal) - part.mass * drag(f, part, q_x, q_y)
     rate.dissipated = limit * p.speed
-    return p.normal
+    return load
+
+
+@device_no_arrays
+def grip_at(f: SurfacePoint, part: Part, load: float) -> Grip:
+    """What the contact bears under a normal force [N]."""
+    return grip(part.law, load, f.w_xx, f.w_xy, f.w_yy)
 
 
 @device_no_arrays
@@ -216,8 +222,8 @@ def energy_at_rest(local: LocalSurface, part: Part, time: float, motion: Motion)
 def margin(local: LocalSurface, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 
-    gap: m, the distance from the rim, or a positive lower bound of it.  The measure is dimensionless; the integrator
-    follows its sign to locate such an end.
+    load: N, as on a flat surface.  gap: m, the distance from the rim, or a positive lower bound of it.  The measure is
+    dimensionless; the integrator follows its sign to locate such an end.
     """
     least = gap / local.frame[0].surface_size
     weight = part.mass * max(1.0, abs(part.gravity))

@@ -18,6 +18,8 @@ from particle.events.polynomials import MAX_HALVINGS, halve, narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
+from particle.events.rest.stick_search import leaves_rest_by_search
+from particle.friction import LOCAL
 from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, motion_at
 from particle.types import FloatArray
@@ -59,6 +61,8 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
 
     The search goes from `begin` to `end` [s], within the prepared span.
     """
+    if part.law.kind == LOCAL:
+        return leaves_rest_by_search(local, part, x, y, begin, end)
     unit, lasting = local.frame[0].unit, end - begin
     motion_at(local, x, y, rest.motion, rest.plane)
     _narrow(rest.motion, rest.plane, (begin - local.frame[0].time) / unit, lasting / unit)

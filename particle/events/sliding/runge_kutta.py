@@ -17,7 +17,7 @@ from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surfac
 def motion_rate(
     f: SurfacePoint, mode: int, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion
 ) -> float:
-    """The right side, while sliding or on the slow manifold, into `rate`; returns the load [N].
+    """The right side, while sliding or on the slow manifold, into `rate`; returns the load [N] as on a flat surface.
 
     f: the surface at `motion` and `time`.
     """

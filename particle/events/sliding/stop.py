@@ -27,6 +27,7 @@ from particle.events.mechanics import (
     RestPull,
     at_centre,
     drag,
+    grip_at,
     inner,
     mobility,
     moved,
@@ -128,7 +129,7 @@ def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, s
         way = 1.0 - to_go * to_go
         f = surface_at(local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
         load = pull(f, to_go * v_x, to_go * v_y, part).normal
-        if not -part.law.pull_off <= load <= part.law.largest_load:
+        if not -part.law.pull_off <= grip_at(f, part, load).load <= part.law.largest_load:
             return False
         work += WEIGHTS[k] * (
             push(f, part, load) * stop.time - part.mass * drag(f, part, stop.impulse_x, stop.impulse_y)
