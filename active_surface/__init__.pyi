@@ -55,6 +55,7 @@ from particle import (
     HermiteDrive as HermiteDrive,
     Interrupted as Interrupted,
     KogutEtsion as KogutEtsion,
+    LocalContact as LocalContact,
     Micropart as Micropart,
     Outcome as Outcome,
     Samples as Samples,

@@ -60,13 +60,11 @@ def test_a_path_is_that_by_the_law_of_one_curvature_tabulated(local, bend):
 
 
 def test_a_part_comes_off_where_its_pull_exceeds_the_pull_off_of_the_bent_surface(local):
+    part = Micropart(MASS, (0.0, 0.0))
     for bend in ((0.0, 0.0), (-80.0, -80.0), (60.0, 60.0)):
         pull_off = local.on_surface(np.diag(bend)).pull_off
         lift = np.array([0.99, 1.01]) * (1 + pull_off / (MASS * 9.80665))
-        ends = [
-            simulate(bent(*bend), Micropart(MASS, (0.0, 0.0)), local, 1e-3, gravity=(0.0, 0.0, 9.80665 * (g - 1))).outcome
-            for g in lift
-        ]
+        ends = [simulate(bent(*bend), part, local, 1e-3, gravity=(0.0, 0.0, 9.80665 * (g - 1))).outcome for g in lift]
         assert ends == [Outcome.STUCK, Outcome.DETACHED]
 
 
