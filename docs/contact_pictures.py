@@ -1,4 +1,7 @@
-"""Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load."""
+"""Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load.
+
+And docs/contact_faces.png: the main job with that contact, of a point, of a face, and of a point with a local contact.
+"""
 
 from pathlib import Path
 
@@ -8,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from coupling import Case, build_friction, build_surface, follow_part, read_case
 from particle import KogutEtsion
 
 PAGE = Path(__file__).parent
@@ -32,6 +36,47 @@ def draw_contact() -> None:
     _draw_forces(left)
     _draw_limits(right)
     figure.savefig(PAGE / "contact.png", dpi=100)
+
+
+STROKES = ("10 um", "5 um")
+PARTS = {  # of the main job's cube; colours
+    "a point": ({"size": "95 um"}, "black"),
+    "a face of 95 µm": ({"footprint": "rectangle", "sides": ["95 um", "95 um"], "thickness": "90 um"}, "#1b4f9c"),
+    "a point, contact local under 95 µm": ({"size": "95 um", "local_contact": True}, "#c8371b"),
+}
+
+
+def draw_faces() -> None:
+    figure = Figure(figsize=(12.0, 4.6))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine("constrained", w_pad=0.12)
+    for axes, stroke in zip(figure.subplots(1, 2, sharey=True), STROKES, strict=True):
+        for label, (part, colour) in PARTS.items():
+            case = main_job(part, stroke)
+            path = follow_part(case, build_surface(case), build_friction(case))
+            times = np.linspace(0.0, path.time[-1], 1001)
+            way = np.hypot(*(path.at(times).position - path.position[0]).T)
+            axes.plot(times * 1e3, way * MICRO, color=colour, linewidth=1.5, label=f"{label}: {way[-1] * MICRO:.3g} µm")
+        axes.set_title(f"strokes of {stroke.replace('um', 'µm')}", fontsize=11)
+        axes.set_xlabel("time [ms]")
+        axes.grid(alpha=0.3)
+        axes.legend(loc="upper left", fontsize=9)
+    figure.axes[0].set_ylabel("distance from the start [µm]")
+    figure.savefig(PAGE / "contact_faces.png", dpi=100)
+
+
+def main_job(part: dict[str, object], stroke: str) -> Case:
+    """The main job with the rough contact of the preset "paper" and another part."""
+    base = read_case(PAGE.parent / "examples/transport.toml")
+    drives = [{"position": one.position, "stroke": stroke, "frequency": one.frequency} for one in base.actuators]
+    cube = {"mass": base.part.mass, "position": base.part.position, "centre_height": base.part.centre_height}
+    return Case(
+        plate=base.plate,
+        actuators=drives,
+        part=cube | part,
+        friction={"model": "kogut-etsion", "preset": "paper"},
+        run={"duration": "20 ms"},
+    )
 
 
 def _draw_forces(axes: Axes) -> None:

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import nbformat
 import numpy as np
 from animation_pictures import draw_animation
-from contact_pictures import draw_contact
+from contact_pictures import draw_contact, draw_faces
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
@@ -208,6 +208,7 @@ if __name__ == "__main__":
     draw_aims()
     draw_plates()
     draw_contact()
+    draw_faces()
     draw_motion_error()
     draw_tolerance()
     draw_paraview()

@@ -168,7 +168,8 @@ def _slip(s: Summary, margin: Margin) -> str:
 def _contact(s: Summary, margin: Margin) -> str:
     if margin.value <= 0:
         return f"contact: comes off {_when(s, margin, LIFTS)}"
-    left, scale = (quantity(force, "N") for force in (margin.value * s.margins.scale, s.margins.scale))
+    force = s.margins.pull_off or s.margins.scale
+    left, scale = (quantity(one, "N") for one in (margin.value * s.margins.scale, force))
     over = "pull-off force" if s.margins.by_pull_off else "weight"
     return f"contact: {left} from coming off ({over} {scale}) {_when(s, margin, LIFTS)}"
 

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from coupling import Case
+from coupling import Case, build_friction, run_case
+from coupling.case import InputError
 from coupling.part import bent_under
 from particle import polynomial_surface
 
@@ -60,3 +61,48 @@ def test_a_face_that_is_flat_enough_and_other_laws_have_no_bent_contact():
     assert bent(1.0, 0.0)[2:] == (None, None)
     assert bent(1e5, 0.0)[2:] == (None, None)
     assert bent(60, 60, friction={"model": "constant", "limit": "1 nN"})[1:] == (None, None, None)
+
+
+PLATE = {
+    "plate": {
+        "shape": "disc",
+        "radius": "700 um",
+        "supports": "clamped",
+        "youngs_modulus": "169 GPa",
+        "poisson_ratio": 0.3,
+        "thickness": "20 um",
+    },
+    "actuators": [{"position": ["-200 um", "0 um"], "stroke": "2 um", "frequency": "1000 Hz", "cycle": "sine"}],
+    "part": {"mass": "2e-9 kg", "position": ["-120 um", "-80 um"], "size": "95 um"},
+    "friction": {"model": "kogut-etsion", "preset": "paper"},
+    "run": {"duration": "1 ms"},
+}
+
+
+def test_a_run_s_margins_are_those_of_the_local_law():
+    case = Case.model_validate(PLATE | {"part": PLATE["part"] | {"local_contact": True}})
+    result = run_case(case)
+    margin, law = result.summary.margins.slip, build_friction(case)
+    assert result.summary.outcome == "stuck"
+    surface, place = result.scene.surface, np.array([case.part.position])
+    h = surface.evaluate_along(place, np.array([margin.time])).hessian[0]
+    at = result.trajectory.contact_at([margin.time])
+    needed = np.linalg.norm(at.friction[0])
+    assert margin.value == pytest.approx(needed / law.on_surface(h).friction_limit(at.normal_force[0]), rel=1e-4)
+    flat = run_case(Case.model_validate(PLATE))
+    assert margin.value > 1.05 * flat.summary.margins.slip.value
+    assert result.summary.thresholds.slips_from < 0.98 * flat.summary.thresholds.slips_from
+    assert any("flat faces" in text for text in flat.warnings)
+    assert not any("flat faces" in text for text in result.warnings)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"friction": {"model": "coulomb", "coefficient": 0.1}}, "part.local_contact of Case must be false with model"),
+        ({"run": {"duration": "1 ms", "scheme": "paper"}}, "run.scheme of Case must be"),
+    ],
+)
+def test_what_a_local_contact_does_not_go_with_is_refused(tables, words):
+    with pytest.raises(InputError, match=words):
+        Case.model_validate(CASE | {"part": CASE["part"] | {"local_contact": True}} | tables)
