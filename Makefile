@@ -14,9 +14,10 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
-# In plain Python a bad index raises: a few kernels in `make test`, and in test-all what else marches.
+# In plain Python a bad index raises: a few kernels in `make test`, in test-all a march of each kind, for coverage all.
 PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
-MARCHES := tests/particle tests/physics tests/regression tests/validation/test_single_stroke.py
+MARCHES := tests/particle $(addprefix tests/physics/test_, body.py flight.py jumps.py) tests/regression/test_motion.py
+ALL_MARCHES := tests/particle tests/physics tests/regression tests/validation/test_single_stroke.py
 # Only in test-all: tests marked slow, and files that take long as a whole.
 LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py platform_examples.py)
 LONG += $(addprefix test_, ring_example.py rivals.py study_examples.py wheel.py)
@@ -38,7 +39,8 @@ plain: $(LINT)
 	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not slow and not compiled" $(PLAIN)
 
 # In one pass with the others, as tests of a file share what is made for them.
-test-all coverage: PLAIN := $(MARCHES)
+test-all: PLAIN := $(MARCHES)
+coverage: PLAIN := $(ALL_MARCHES)
 test-all coverage: CHOSEN :=
 test-all: test
 
@@ -86,7 +88,6 @@ paths: .venv/developer
 
 kills: .venv/developer
 	$(BIN)/python tests/abuse/kill_anywhere.py --seed $(SEED)
-	$(BIN)/python tests/abuse/kills.py
 
 docs: .venv/developer
 	$(BIN)/python docs/pictures.py

@@ -3,7 +3,7 @@
     python tests/abuse/kill_anywhere.py [--count 29] [--seed 1]
 
 So many kills of each of run, sweep, aim, export, animate, view and app, at moments spread over all that each does.
-Then a disk that is full, a folder that vanishes, and two processes in one folder. `kills.py` looks at what was flushed.
+Then a disk that is full, a folder that vanishes, and two processes in one folder.
 """
 
 from __future__ import annotations

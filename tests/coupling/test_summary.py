@@ -283,17 +283,10 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "outline",
-    [
-        {"sides": 6, "radius": 3e-4, "supports": "simply-supported"},
-        {"corners": [(0.0, 0.0), (6e-4, 0.0), (6e-4, 3e-4), (3e-4, 3e-4), (3e-4, 6e-4), (0.0, 6e-4)]},
-    ],
-    ids=["hexagon", "re-entrant"],
-)
-def test_strain_is_that_off_corners_where_moments_are_infinite(outline):
+def test_strain_is_that_off_corners_where_moments_are_infinite():
     """At such a corner it would grow without end as cells shrink there."""
-    x, y = (0.0, 0.0) if "sides" in outline else (2e-4, 2e-4)
+    outline = {"corners": [(0.0, 0.0), (6e-4, 0.0), (6e-4, 3e-4), (3e-4, 3e-4), (3e-4, 6e-4), (0.0, 6e-4)]}
+    x, y = 2e-4, 2e-4
     cases = [
         Case(
             plate={key: PLATE[key] for key in ("youngs_modulus", "poisson_ratio", "thickness")}

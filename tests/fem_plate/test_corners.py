@@ -41,10 +41,6 @@ def test_simply_supported_corners(degrees):
     assert of(degrees, S, S) == pytest.approx(smallest, abs=1e-6)
 
 
-def test_an_obtuse_simply_supported_corner_is_pi_over_omega_less_1():
-    assert of(120, S, S) == pytest.approx(180 / 120 - 1, abs=1e-7)
-
-
 @pytest.mark.parametrize("degrees", [100, 225, 300])
 @pytest.mark.parametrize("sides", [(C, C), (S, S), (C, S), (F, F), (C, F), (S, F)])
 def test_the_exponent_is_the_smallest_root_of_the_frequency_equation(degrees, sides):

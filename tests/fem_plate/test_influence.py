@@ -123,12 +123,6 @@ def test_a_point_that_is_no_number_is_refused(plate):
         plate.influence([[float("nan"), 0.0]])
 
 
-def test_actuators_one_micrometre_apart_are_accepted(plate, spots, radius):
-    points = np.array([[100e-6, 0.0], [101e-6, 0.0]])
-    found, truth = plate.influence(points).evaluate(spots)[0], DiscShapes(points, radius).evaluate(spots)[0]
-    assert np.abs(found - truth).max() < 1e-6 * np.abs(truth).max()
-
-
 @pytest.mark.parametrize("place, bound", [(0.8, 5e-7), (0.9, 1.5e-6), (0.95, 5e-6), (0.98, 2e-5)])
 def test_cells_are_small_where_an_actuator_is_close_to_the_rim(plate, spots, radius, place, bound):
     points = np.array([[place * radius, 0.0]])

@@ -7,13 +7,13 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from mesh_checks import areas, true_area
 
 from meshes import Parabolas, read, rectangle
 
 L_WITH_HOLE = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
 UM = 1e-6
 AREA = (400 * 400 - 200 * 200 - np.pi * 50**2) * UM**2
-GAUSS = (np.polynomial.legendre.leggauss(5)[0] + 1) / 2, np.polynomial.legendre.leggauss(5)[1] / 2
 
 # A square of four triangles around its middle, point 4, with the names of its sides.
 POINTS = np.array([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)], dtype=float)
@@ -37,19 +37,6 @@ def write(path, points=POINTS, triangles=TRIANGLES, lines=LINES, tags=TAGS, name
     )
     meshio.write(path, mesh, **({"file_format": "gmsh22", "binary": False} if path.suffix == ".msh" else {}) | options)
     return path
-
-
-def areas(mesh):
-    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
-    return ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
-
-
-def true_area(mesh):
-    total = 0.0
-    for name in mesh.boundaries:
-        points, tangents = mesh.arcs(name, GAUSS[0])
-        total += ((points[..., 0] * tangents[..., 1] - points[..., 1] * tangents[..., 0]) @ GAUSS[1]).sum() / 2
-    return total
 
 
 def check_l_with_hole(mesh, outer="outer", hole="hole"):

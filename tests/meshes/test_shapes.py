@@ -107,6 +107,7 @@ def test_the_outline_survives_refinement():
 
 
 SHAPES = [
+    (disc, {"radius": 1.0, "cell_size": 0.5}),
     (rectangle, {"width": 1.0, "height": 2.0, "cell_size": 0.5}),
     (annulus, {"inner_radius": 1.0, "outer_radius": 2.0, "cell_size": 0.5}),
     (ellipse, {"semi_axis_x": 1.0, "semi_axis_y": 2.0, "cell_size": 0.5}),

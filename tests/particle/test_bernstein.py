@@ -11,7 +11,6 @@ from numpy.polynomial import Polynomial
 
 from particle.events.polynomials import MAX_HALVINGS, first_negative, halve, quintic_to_bernstein, to_bernstein
 
-SIZES = st.integers(1, 17)
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)
 ROUNDING = 64 * np.finfo(float).eps
 

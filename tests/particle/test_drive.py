@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from pieces import piece_at
 
 from particle import Drive
 from particle.drives import drive_table, next_breakpoint
@@ -73,28 +72,8 @@ def test_breakpoints_come_at_delay_half_periods_and_the_last_end():
     assert breakpoints == pytest.approx(sorted([0.4e-3, 1.4e-3, 2.4e-3, 3.4e-3, 4.4e-3, 0.0, 1 / 450]), abs=1e-15)
 
 
-def test_an_endless_drive_has_a_breakpoint_each_half_period_and_never_the_same_twice():
-    table, breakpoints, time = drive_table([Drive(1e-6, 300)]), [], 0.0
-    for _ in range(1000):
-        time = next_breakpoint(table, time)
-        breakpoints.append(time)
-    assert breakpoints == pytest.approx(np.arange(1, 1001) / 600, rel=1e-14)
-
-
 def test_a_surface_without_drives_has_no_breakpoint():
     assert next_breakpoint(drive_table([]), 0.0) == math.inf
-
-
-@pytest.mark.parametrize("name", DRIVES)
-@pytest.mark.parametrize("time", [0.0, 0.7e-3, 2.0e-3, 3.1e-3])
-def test_a_piece_is_the_stroke_up_to_the_next_breakpoint(name, time):
-    drive = DRIVES[name]
-    table, unit = drive_table([drive]), 0.37e-3
-    piece = piece_at(table, 0, time, unit)
-    end = min(next_breakpoint(table, time), time + unit)
-    times = np.linspace(time, end, 9)[:-1]
-    values = np.polynomial.polynomial.polyval((times - time) / unit, piece)
-    assert np.abs(values - drive.evaluate(times)[0]).max() < 1e-13 * abs(drive.stroke)
 
 
 def test_a_stroke_of_up_is_held_for_ever_and_a_counted_one_ends_at_0():
@@ -127,10 +106,3 @@ def test_values_keep_the_shape_of_the_times():
 def test_a_wrong_field_is_refused_by_name(wrong, says):
     with pytest.raises(ValueError, match=f"^Input {says} of Drive must be [^;]*; got [^;]*$"):
         Drive(**{"stroke": 1e-4, "frequency": 300.0} | wrong)
-
-
-def test_all_mistakes_are_told_at_once():
-    with pytest.raises(ValueError) as caught:
-        Drive(math.nan, 0.0, cycle="x", cycles=0, delay=-1.0)
-    for name in ("stroke", "frequency", "cycle", "cycles", "delay"):
-        assert f"Input {name} of Drive" in str(caught.value)

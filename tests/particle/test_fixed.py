@@ -139,19 +139,6 @@ def test_a_part_that_friction_cannot_hold_turns_back(time_step):
     assert found.outcome is Outcome.MOVING
 
 
-def test_the_error_falls_with_the_first_power_of_the_step():
-    """Break-away, a curved path and a moving surface, against scheme "events"; the energies' gap falls alike."""
-    surface, part = breathing_bowl(), Micropart(1.0, (0.3, 0.2), (-0.2, 0.5))
-    friction = CoulombAdhesion(0.1)
-    truth = simulate(surface, part, friction, 0.3, tolerance=1e-11)
-    runs = [fixed(surface, part, friction, 0.3, h) for h in (4e-3, 2e-3, 1e-3)]
-    errors = np.array([np.hypot(*(run.position[-1] - truth.position[-1])) for run in runs])
-    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(1.0, abs=0.1)
-    assert errors[-1] < 1e-3
-    gaps = np.array([run.energy.balance for run in runs])
-    assert np.log2(gaps[:-1] / gaps[1:]).min() > 0.9 and gaps[-1] < 5e-3
-
-
 def test_a_shaken_platform_agrees_to_first_order():
     base = (Drive(6e-3, 5.0), Drive(-5e-3, 4.0))
     surface, part = polynomial_surface([[0.0]], base=base), Micropart(1.0, (0.0, 0.0))

@@ -213,16 +213,6 @@ def test_the_ledger_closes_with_the_new_terms(name, scheme):
         assert path.energy.work[-1] == pytest.approx(truth.work[-1], rel=2e-2)
 
 
-@pytest.mark.compiled
-def test_fixed_steps_converge_with_order_one_to_located_events():
-    surface, part = disc(50e-6), Micropart(MASS, (100e-6, 200e-6), centre_height=30e-6)
-    truth = simulate(surface, part, LAWS["constant"], 2e-3, tolerance=1e-12).position[-1]
-    steps = (4e-7, 2e-7, 1e-7)
-    ends = [simulate(surface, part, LAWS["constant"], 2e-3, scheme="fixed", time_step=h).position[-1] for h in steps]
-    errors = [float(np.hypot(*(end - truth))) for end in ends]
-    assert errors[0] / errors[2] == pytest.approx(4.0, rel=0.2)
-
-
 def test_a_platform_does_not_tilt():
     platform = platform_surface(Drive(1e-3, 20.0), None, Drive(1e-4, 30.0), size=1e-3)
     low, high = (

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import trapezoid
 
 from coupling.surface.motion import surface_motion
-from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, Outcome, polynomial_surface, simulate
+from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, polynomial_surface, simulate
 
 G, MASS = 9.80665, 2e-9
 BOWL = [[0.0, 0.05, 0.9], [0.0, 0.2, 0.0], [0.6, 0.0, 0.0]]  # tilted and oval
@@ -43,16 +43,6 @@ def test_friction_takes_the_work_of_its_way():
     way = trapezoid(height_and_speed(*trajectory.at(times)[1:3])[1], times)
     lost = G * (w[0] - w[-1]) + 0.5 * (u[0] ** 2 - u[-1] ** 2)
     assert lost == pytest.approx(q * way, rel=1e-4)
-
-
-def test_a_part_that_stays_stuck_drifts_exactly_nowhere(exact):
-    """Sixty strokes too weak to move it: the same bits at the end, and no event."""
-    surface = surface_motion(exact, [Drive(10e-6, 300), Drive(-8e-6, 450)])
-    start = (100e-6, -30e-6)
-    trajectory = simulate(surface, Micropart(MASS, start), ConstantFriction(20.9 * MASS), 100e-3)
-    assert trajectory.outcome is Outcome.STUCK and not trajectory.events
-    assert (trajectory.position == start).all() and not trajectory.velocity.any()
-    assert trajectory.time[-1] == 100e-3
 
 
 def test_a_part_at_rest_on_a_plate_at_rest_stays(exact):

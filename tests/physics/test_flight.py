@@ -169,18 +169,6 @@ def test_tilted_gravity_and_a_squeeze_bend_the_flight(gravity, squeeze):
     assert path.energy.balance < 1e-9
 
 
-@pytest.mark.parametrize("squeeze", [0.0, 4.0])
-def test_a_squeeze_brakes_a_sliding_part_by_its_share(squeeze):
-    """Coulomb's limit is mu (m g_z + squeeze): a tilt of 0.6 m/s^2 brakes it as well."""
-    rate = 0.25 * (9.0 + squeeze) + 0.6
-    part = Micropart(MASS, (0.0, 0.0), (2.0, 0.0), squeeze=squeeze * MASS)
-    path = simulate(driven([level(0.0)]), part, CoulombAdhesion(0.25), 2.0, gravity=(-0.6, 0.0, -9.0))
-    assert [e.kind for e in path.events] == [STOPS]
-    assert path.events[0].time == pytest.approx(2.0 / rate, rel=1e-8)
-    assert path.events[0].position == pytest.approx((2.0 / rate, 0.0), abs=1e-8)
-    assert path.energy.balance < 1e-9
-
-
 def test_the_part_flies_straight_while_the_base_moves_under_it():
     """Seen from the base its path is v t - b(t)."""
     base = (Drive(0.4, 0.8, cycle="up"), Drive(-0.3, 1.1, cycle="up"))
@@ -216,13 +204,6 @@ def test_a_part_held_without_pull_off_never_flies():
     path = flies(driven([drive]), Micropart(MASS, (0.0, 0.0), (1.0, 0.0)), ConstantFriction(2.0 * MASS), 0.4)
     assert not path.events and not (path.state == State.FLIGHT).any()
     assert path.position[-1, 0] == pytest.approx(0.4 - 0.16, abs=1e-9)
-
-
-def test_without_flight_the_run_ends_where_the_part_comes_off():
-    drive = Drive(1.0, 2.0, cycle="up")
-    path = simulate(driven([drive]), Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.3), 2.0)
-    assert path.outcome is Outcome.DETACHED
-    assert path.time[-1] == pytest.approx(throw(drive, G, G)[0], rel=1e-8)
 
 
 def test_a_part_lands_where_its_parabola_meets_a_surface_of_sixth_order_along_it():

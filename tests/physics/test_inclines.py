@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from particle import ConstantFriction, CoulombAdhesion, Micropart, Outcome, polynomial_surface, simulate
+from particle import CoulombAdhesion, Micropart, Outcome, polynomial_surface, simulate
 
 G = 9.80665
 ANGLE = math.radians(30)
@@ -13,15 +13,6 @@ ANGLE = math.radians(30)
 def incline(angle):
     """Rises along x."""
     return polynomial_surface([[0.0], [math.tan(angle)]])
-
-
-@pytest.mark.parametrize(
-    "law", [CoulombAdhesion(1.001 * math.tan(ANGLE)), ConstantFriction(1.001 * G * math.sin(ANGLE))]
-)
-def test_below_the_friction_angle_nothing_moves_at_all(law):
-    trajectory = simulate(incline(ANGLE), Micropart(1.0, (0.3, 0.2)), law, 100.0)
-    assert trajectory.outcome is Outcome.STUCK and not trajectory.events
-    assert (trajectory.position == [0.3, 0.2]).all()
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9])

@@ -50,22 +50,3 @@ def test_the_order_of_the_actuators_does_not_matter(surfaces, layout, radius):
     plain = path(surfaces["plain"], START, friction)
     swapped = path(surface_motion(DiscShapes(layout[::-1].copy(), radius), DRIVES[::-1], 1e-10), START, friction)
     assert np.abs(swapped.position[-1] - plain.position[-1]).max() < 2e-9 * radius
-
-
-def test_a_part_twice_as_heavy_under_twice_the_friction_takes_the_same_path(surfaces, radius):
-    plain = path(surfaces["plain"], START, ConstantFriction(20.9 * MASS))
-    heavy = simulate(
-        surfaces["plain"], Micropart(2 * MASS, tuple(START)), ConstantFriction(41.8 * MASS), 4e-3, tolerance=1e-11
-    )
-    assert np.abs(heavy.position[-1] - plain.position[-1]).max() < 1e-12 * radius
-    assert heavy.normal_force[-1] == pytest.approx(2 * plain.normal_force[-1], rel=1e-9)
-
-
-def test_all_lengths_times_ten_and_accelerations_likewise_scale_the_path(surfaces, layout, radius):
-    """Lengths by 10 at the same times: gravity and Q/m by 10 as well."""
-    plain = path(surfaces["plain"], START, ConstantFriction(20.9 * MASS))
-    drives = [Drive(10 * d.stroke, d.frequency, d.cycle, d.cycles, d.delay) for d in DRIVES]
-    surface = surface_motion(DiscShapes(10 * layout, 10 * radius), drives, 1e-10)
-    part = Micropart(MASS, tuple(10 * START))
-    large = simulate(surface, part, ConstantFriction(209 * MASS), 4e-3, gravity=98.0665, tolerance=1e-11)
-    assert np.abs(large.position[-1] / 10 - plain.position[-1]).max() < 2e-9 * radius

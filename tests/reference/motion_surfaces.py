@@ -79,16 +79,6 @@ def boggio(points: Sequence[Sequence[float]], radius: float, heights: Sequence[H
     return surface
 
 
-def recorded(surface) -> Surface:
-    """A SurfaceMotion by its public fields, at rest in its plane: what differs is then the path's alone."""
-
-    def point(x: float, y: float, time: float) -> Point:
-        f = surface.evaluate((x, y), time)
-        return Point(*(np.asarray(value)[0] for value in f[:6]))
-
-    return point
-
-
 def polynomial(coefficients, base: Sequence[Height] = (still, still)) -> Surface:
     """w = sum c[i, j, k] x^i y^j t^k (or c[i, j]), on a base that moves."""
     c = np.atleast_3d(np.asarray(coefficients, float))

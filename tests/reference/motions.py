@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from particle.events.mechanics.motion import Motion, as_numbers
 from particle.records import new_records
 
@@ -13,8 +11,3 @@ def motion(*numbers: float) -> Motion:
     motions = new_records(Motion)
     as_numbers(motions)[0, : len(numbers)] = numbers
     return motions[0]
-
-
-def numbers_of(one: Motion) -> np.ndarray:
-    """All numbers (8,) of a motion, in that order."""
-    return np.array([one[name] for name in one.dtype.names])

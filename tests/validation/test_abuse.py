@@ -1,4 +1,4 @@
-"""Abuse in small: a slice of the fuzzer, of the random cases and of the killed runs. `make abuse` tries the whole."""
+"""Abuse in small: a slice of the fuzzer and of the random cases. `make abuse` tries the whole."""
 
 import subprocess
 import sys
@@ -15,11 +15,11 @@ ABUSE = Path(__file__).parents[1] / "abuse"
 @pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.skipif(sys.platform != "linux", reason="the fuzzer needs fork and limits of memory")
-def test_a_hundred_inputs_and_more_are_refused_or_accepted():
-    command = [sys.executable, "-m", "fuzz", "--seed", "7", "--count", "150"]
+def test_sixty_inputs_are_refused_or_accepted():
+    command = [sys.executable, "-m", "fuzz", "--seed", "7", "--count", "60"]
     done = subprocess.run(command, cwd=ABUSE, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "seed 7: 150 inputs" in done.stdout and "0 wrong" in done.stdout
+    assert "seed 7: 60 inputs" in done.stdout and "0 wrong" in done.stdout
 
 
 @pytest.mark.compiled
@@ -29,13 +29,3 @@ def test_random_cases_end_within_their_work_and_account_for_their_energy():
         assert is_finite(path), seed
         assert path.outcome is not Outcome.WORK_LIMIT, seed
         assert path.energy.balance < 1e-6, seed
-
-
-@pytest.mark.slow
-@pytest.mark.compiled
-def test_killed_runs_leave_files_that_vtk_reads():
-    from kills import kills
-
-    for kill in kills(3, frames=400):
-        assert all(kill.found[kind] >= steps for kind, steps in kill.flushed.items() if steps)
-        assert any(kill.flushed.values())

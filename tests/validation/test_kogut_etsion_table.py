@@ -19,7 +19,7 @@ PRESETS = {
     "unrounded": KogutEtsion(coefficients="unrounded"),
     "paper": KogutEtsion.paper(),
 }
-MANY = 6
+MANY = 3
 
 
 def random_contacts(count):

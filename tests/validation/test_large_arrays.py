@@ -33,6 +33,7 @@ def inside(mesh, points, gap):
 
 
 SQUARE = rectangle(12 * PITCH, 11 * PITCH, PITCH)
+ARRAY = lattice(11, 10)
 DISC = disc(8 * PITCH, 1.5 * PITCH)
 RING = annulus(2 * PITCH, 8 * PITCH, PITCH)
 L = polygon(PITCH * np.array([[-6, -6], [6, -6], [6, 0], [0, 0], [0, 6], [-6, 6]]), 2 * PITCH)
@@ -41,7 +42,7 @@ IRREGULAR = lattice(15, 15) + np.random.default_rng(1).uniform(-0.3, 0.3, (225, 
 KINDS = np.random.default_rng(2).choice([np.inf, 20e3, 0.0], 400, p=[0.6, 0.3, 0.1])  # N/m
 
 CASES = {
-    "rectangle, mixed sides": (SQUARE, MIXED, lattice(11, 10), None),
+    "rectangle, mixed sides": (SQUARE, MIXED, ARRAY, None),
     "disc, irregular": (DISC, "clamped", inside(DISC, IRREGULAR, 0.6), None),
     "annulus": (RING, {"outer": "clamped"}, inside(RING, lattice(16, 16), 0.6), None),
     "springs and floating": (DISC, "clamped", inside(DISC, lattice(15, 15), 0.6), KINDS),
@@ -49,9 +50,30 @@ CASES = {
 }
 
 
+@pytest.fixture(scope="module", autouse=True)
+def small_tiles():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(patches, "TILE", 3)
+        yield
+
+
+@pytest.fixture(scope="module")
+def plate(section):
+    return Plate(SQUARE, section)
+
+
+@pytest.fixture(scope="module")
+def shapes(plate):
+    return plate.influence(ARRAY, truncation=TRUNCATION)
+
+
+@pytest.fixture(scope="module")
+def yielding(plate):
+    return plate.influence(ARRAY, KINDS[: len(ARRAY)], truncation=TRUNCATION)
+
+
 @pytest.mark.parametrize("name", CASES)
-def test_patches_give_the_shapes_of_the_whole_plate(section, monkeypatch, name):
-    monkeypatch.setattr(patches, "TILE", 3)
+def test_patches_give_the_shapes_of_the_whole_plate(section, name):
     mesh, supports, points, springs = CASES[name]
     springs = None if springs is None else springs[: len(points)]
     plate = Plate(mesh, section, supports)
@@ -75,8 +97,9 @@ def test_patches_give_the_shapes_of_the_whole_plate(section, monkeypatch, name):
     assert np.abs(shapes.stiffness.toarray() - dense.stiffness).max() < bound * np.abs(dense.stiffness).max()
 
 
-def test_more_than_2000_actuators_take_patches_by_themselves(section):
+def test_more_than_2000_actuators_take_patches_by_themselves(section, monkeypatch):
     """A row in a strip, all of whose inner tiles are alike: each shape is that of a short strip."""
+    monkeypatch.setattr(patches, "TILE", 10)
     points = lattice(2100, 1)
     shapes = Plate(rectangle(2101 * PITCH, 4 * PITCH, 2 * PITCH), section).influence(points)
     assert isinstance(shapes, PatchedShapes) and shapes.truncation_error <= 1e-6
@@ -91,7 +114,8 @@ def test_more_than_2000_actuators_take_patches_by_themselves(section):
         assert np.abs(found - truth).max() * PITCH**order < 10.0**order * (shapes.error_estimate + short.error_estimate)
 
 
-def test_a_lattice_of_900_is_1_at_each_actuator_and_0_at_the_others(section):
+def test_a_lattice_of_900_is_1_at_each_actuator_and_0_at_the_others(section, monkeypatch):
+    monkeypatch.setattr(patches, "TILE", 10)
     points = lattice(30, 30)
     shapes = Plate(rectangle(31 * PITCH, 31 * PITCH, 6 * PITCH), section).influence(points, truncation=1e-6)
     assert isinstance(shapes, PatchedShapes) and shapes.truncation_error <= 1e-6
@@ -102,13 +126,10 @@ def test_a_lattice_of_900_is_1_at_each_actuator_and_0_at_the_others(section):
     assert shapes.evaluate(points, np.eye(900)[row])[0] == pytest.approx(np.eye(900)[row], abs=1e-6)
 
 
-def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_whole_plate(section, monkeypatch):
-    monkeypatch.setattr(patches, "TILE", 3)
-    points = lattice(11, 10)
-    plate = Plate(SQUARE, section)
-    dense, shapes = plate.influence(points), plate.influence(points, truncation=TRUNCATION)
+def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_whole_plate(plate, shapes):
+    dense = plate.influence(ARRAY)
     xy = 0.9 * PITCH * np.random.default_rng(0).uniform(-5.5, 5.5, (300, 2))
-    heights = np.random.default_rng(1).uniform(0, 1, (5, len(points)))
+    heights = np.random.default_rng(1).uniform(0, 1, (5, len(ARRAY)))
     for one in (dense, shapes):
         assert np.allclose(one.values(xy), one.evaluate(xy)[0], atol=1e-12)
         sums = one.derivatives(xy / one.size, heights.T)[0]
@@ -118,44 +139,35 @@ def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_wh
     assert left_out <= 2 * TRUNCATION * heights.max()
 
 
-def test_the_steepest_and_highest_place_is_found_without_looking_everywhere(section):
+def test_the_steepest_and_highest_place_is_found_without_looking_everywhere(plate):
     """Against a fine grid all over the plate, for strokes, and where some actuators yield or only push."""
-    points = lattice(11, 10)
-    plate = Plate(SQUARE, section)
     rng = np.random.default_rng(4)
     xy = np.stack(np.meshgrid(np.linspace(-6, 6, 97), np.linspace(-5.5, 5.5, 89)), axis=-1).reshape(-1, 2) * PITCH
-    for springs in (None, KINDS[: len(points)]):
-        shapes = plate.influence(points, springs)
-        heights = rng.uniform(0, 1, (3, len(points))) / shapes.own_heights()
+    for springs in (None, KINDS[: len(ARRAY)]):
+        shapes = plate.influence(ARRAY, springs)
+        heights = rng.uniform(0, 1, (3, len(ARRAY))) / shapes.own_heights()
         fields = [shapes.evaluate(xy, h) for h in heights]
         slope, height = steepest(shapes, heights)
         assert slope == pytest.approx(max(np.hypot(*g.T).max() for _, g, _ in fields), rel=0.15)
         assert height == pytest.approx(max(np.abs(w).max() for w, _, _ in fields), rel=0.05)
 
 
-def test_what_a_part_feels_and_the_first_frequency_are_found_from_a_piece_of_plate(section, monkeypatch):
-    monkeypatch.setattr(patches, "TILE", 3)
-    points = lattice(11, 10)
-    plate = Plate(SQUARE, section)
-    shapes = plate.influence(points, truncation=TRUNCATION)
-    for spot in np.array([[0.3, 0.2], [5.7, -5.2], [-2.5, 1.5]]) * PITCH:
-        whole = plate.influence(np.vstack([points, spot]), [*[np.inf] * len(points), 0.0])
+def test_what_a_part_feels_and_the_first_frequency_are_found_from_a_piece_of_plate(plate, shapes, section):
+    for spot in np.array([[5.7, -5.2], [-2.5, 1.5]]) * PITCH:
+        whole = plate.influence(np.vstack([ARRAY, spot]), [*[np.inf] * len(ARRAY), 0.0])
         assert shapes.compliance_at(spot) == pytest.approx(whole.evaluate(spot[None])[0][0, -1], rel=1e-3)
-    found, truth = shapes.first_frequency(section.density * section.thickness), plate.frequencies(1, points)[0]
+    found, truth = shapes.first_frequency(section.density * section.thickness), plate.frequencies(1, ARRAY)[0]
     assert truth * (1 - 1e-3) < found < 1.1 * truth
-    sparse = points[np.hypot(*(points - 2 * PITCH).T) > 2.1 * PITCH]
+    sparse = ARRAY[np.hypot(*(ARRAY - 2 * PITCH).T) > 2.1 * PITCH]
     found = plate.influence(sparse, truncation=TRUNCATION).first_frequency(section.density * section.thickness)
     assert found == pytest.approx(plate.frequencies(1, sparse)[0], rel=0.02)
     assert found < truth / 2
 
 
-def test_the_matrix_of_shapes_is_their_values(section, monkeypatch):
-    monkeypatch.setattr(patches, "TILE", 3)
-    points = lattice(11, 10)
-    for springs in (None, KINDS[: len(points)]):
-        shapes = Plate(SQUARE, section).influence(points, springs, truncation=TRUNCATION)
-        xy = np.vstack([points, points[:-1] + PITCH / 3])
-        assert np.abs(shapes.matrix(xy).toarray() - shapes.values(xy)).max() < 1e-12 * shapes.own_heights().max()
-        left_out = np.abs(shapes.matrix(xy, 1e-2).toarray() - shapes.values(xy)) / shapes.own_heights()
+def test_the_matrix_of_shapes_is_their_values(shapes, yielding):
+    xy = np.vstack([ARRAY, ARRAY[:-1] + PITCH / 3])
+    for one in (shapes, yielding):
+        assert np.abs(one.matrix(xy).toarray() - one.values(xy)).max() < 1e-12 * one.own_heights().max()
+        left_out = np.abs(one.matrix(xy, 1e-2).toarray() - one.values(xy)) / one.own_heights()
         assert 1e-3 < left_out.max() < 1e-2
-        assert shapes.matrix(xy, 1e-2).nnz < shapes.matrix(xy).nnz / 2
+        assert one.matrix(xy, 1e-2).nnz < one.matrix(xy).nnz / 2

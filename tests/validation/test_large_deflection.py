@@ -122,43 +122,10 @@ def test_the_square_against_ritz(clamped_sides, membrane):
     assert state.stretching_energy == pytest.approx(stretching, rel=5e-7)
 
 
-@pytest.mark.slow
-def test_the_annulus_converges():
-    pressure = 100.0
-    expected = radial.annulus(0.4, pressure=pressure, held=False)
-    large = Plate(annulus(0.4, 1.0, 0.2), UNIT, {"outer": C}).large_deflection([])
-    r, angle = np.linspace(0.42, 0.98, 25), np.linspace(0, 6, 25)
-    off = []
-    for halvings in (0, 1, 2):
-        state = large.solved(np.zeros(0), pressure, 0, halvings)
-        w = state.evaluate(np.column_stack([r * np.cos(angle), r * np.sin(angle)]))[0]
-        off.append(np.abs(w - radial.at_radii(expected, expected.w, r)).max() / np.abs(expected.w).max())
-    assert off[2] < off[1] / 8
-    assert off[2] < 1e-6
-    assert state.stretching_energy == pytest.approx(expected.stretching, rel=1e-5)
-
-
-@pytest.mark.slow
-def test_the_energy_bracket_closes():
-    """Of one and the same w, on a square, where both geometries are exact."""
-    gaps = []
-    large = Plate(rectangle(2.0, 2.0, 0.6), UNIT).large_deflection(TWO)
-    for halvings in (0, 1, 2):
-        state = large.solved(np.array([2.0, -1.0]), 0.0, 0, halvings)
-        other = state.discrete.plane_stress.membrane
-        above = other.respond(state.discrete.equilibrium.slopes_at(other.samples, state.coefficients))[1]
-        gaps.append(above / state.coefficients.stretching - 1)
-    print(gaps)
-    assert min(gaps) > 0
-    assert gaps[1] < gaps[0] / 4
-    assert gaps[2] < gaps[1] / 4
-
-
 ORDERS = [3.3, 2.1, 1.5]  # of w, gradient and reaction
 LAYOUTS = {
     "a disc at 5 t": (disc(1.0, 0.3), C, TWO, [5.2, -3.0], {}, 0.0),
     "near the rim": (disc(1.0, 0.3), C, [(0.85, 0.1), (-0.2, 0.3)], [1.0, -0.5], {}, 0.0),
-    "near each other": (disc(1.0, 0.3), S, [(0.1, 0.1), (0.1, 0.2)], [2.0, 1.8], {}, 0.0),
     "springs": (disc(1.0, 0.3), C, TWO, [3.0, 2.0], {"stiffness": [20.0, 200.0]}, 0.0),
     "a movable square": (rectangle(1.0, 1.0, 0.2), S, [(0.1, 0.2)], [2.0], {"in_plane_supports": "movable"}, 0.0),
     "an annulus": (annulus(0.4, 1.0, 0.25), C, [(0.7, 0.0), (0.0, -0.6)], [2.0, 1.0], {}, 0.0),

@@ -14,7 +14,7 @@ from meshes import polygon, regular_polygon
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0, density=1.0)
 S = "simply-supported"
-EVERY = [5, 12, *(pytest.param(sides, marks=pytest.mark.slow) for sides in (6, 8, 24))]
+EVERY = [5, 12, pytest.param(24, marks=pytest.mark.slow)]
 
 
 def plate(sides, cell_size):
@@ -51,10 +51,9 @@ def test_the_square_meets_its_tolerance_where_its_cells_alone_do_not():
         assert low < error < high and error < 3 * found.error_estimate
 
 
-@pytest.mark.parametrize("sides", [6, pytest.param(24, marks=pytest.mark.slow)])
-def test_first_frequencies_of_regular_polygons(sides):
-    modes = plate(sides, 0.22).modes(1)
-    assert 2 * np.pi * modes.frequencies[0] == pytest.approx(polygons.first_frequency(sides), rel=5e-7)
+def test_the_first_frequency_of_a_regular_polygon():
+    modes = plate(6, 0.22).modes(1)
+    assert 2 * np.pi * modes.frequencies[0] == pytest.approx(polygons.first_frequency(6), rel=5e-7)
     assert modes.error_estimate[0] < 2e-6
 
 
@@ -63,7 +62,7 @@ def test_the_first_frequency_of_a_hexagon_is_the_published_one():
     assert polygons.first_frequency(6) == pytest.approx(7.155339133926, rel=1e-9)
 
 
-@pytest.mark.parametrize("sides", [12, *(pytest.param(sides, marks=pytest.mark.slow) for sides in (16, 24))])
+@pytest.mark.parametrize("sides", [12, pytest.param(24, marks=pytest.mark.slow)])
 def test_estimates_with_a_tolerance_are_no_less_than_half_of_the_error(sides):
     """Where rounding of corner functions is most of it, finer cells gain little: estimates were 1/3 to 1/30 of it."""
     xy, exact = places(sides), polygons.Polygon(sides, "pressure")
@@ -76,7 +75,7 @@ def test_estimates_with_a_tolerance_are_no_less_than_half_of_the_error(sides):
 
 @pytest.mark.parametrize(
     ("sides", "tension", "foundation"),
-    [(6, 0.0, 100.0), *(pytest.param(*case, marks=pytest.mark.slow) for case in ((8, -1.0, -10.0), (12, 0.0, 100.0)))],
+    [(6, 0.0, 100.0), pytest.param(8, -1.0, -10.0, marks=pytest.mark.slow)],
 )
 def test_modes_on_foundations_know_how_far_corners_take_them_off(sides, tension, foundation):
     """omega^2 rho t = D lam^2 + N lam + k, lam the membrane's; estimates were 3e3 to 2e5 times too small."""

@@ -1,11 +1,9 @@
 """The rivals that the integrator is timed against solve the same equations: their pieces agree with the product's."""
 
 import numpy as np
-import paths
 import pytest
 from rivals import with_numba, with_scipy
-from rivals.compare import COMPILED, FIXED, OURS, SCIPY, TARGETS, Comparison, Row, cheapest, ratios_table
-from rivals.problem import RADIUS, STARTS, path_of, problem, sunflower, surface_of
+from rivals.problem import RADIUS, STARTS, path_of, problem, surface_of
 
 from particle import Drive, Micropart, simulate
 
@@ -91,35 +89,6 @@ def test_a_part_that_is_held_stays(pair, surface):
     assert found.evaluations == 0 and tuple(found.place) == glued.start
 
 
-def test_the_cheapest_tolerance_is_not_a_lucky_one():
-    errors = {1e-3: (1e-9, 10), 1e-6: (1e-4, 20), 1e-8: (1e-7, 50), 1e-10: (1e-8, 40)}
-    assert cheapest(errors, 1e-6) == (1e-10, 40)
-    assert cheapest(errors, 1e-3) == (1e-3, 10)
-    with pytest.raises(AssertionError, match="tightest is off by 1.0e-08"):
-        cheapest(errors, 1e-9)
-
-
-@pytest.mark.parametrize("count", [1, 2, 1000])
-def test_seeds_lie_apart_and_within(count):
-    points = sunflower(count)
-    assert points.shape == (count, 2)
-    assert np.hypot(*points.T).max() < 0.8 * RADIUS
-    apart = np.hypot(*(points[:, None] - points).transpose(2, 0, 1)) + RADIUS * np.eye(count)
-    assert apart.min() > 1.0 * RADIUS / np.sqrt(count) or count < 3
-
-
-def test_tables_tell_what_was_not_tried():
-    def row(problem, method, ratio, extrapolated=False):
-        return Row(problem, 1, TARGETS[0], method, (ratio, ratio / 2, 2 * ratio), 2_500_000, extrapolated)
-
-    rows = [row("1", COMPILED, 123.4, True), row("1", FIXED, 0.5), row("1, rough", COMPILED, 7.0)]
-    header, _, *lines = ratios_table(rows)
-    assert header == "| error | method | 1 | 1, rough |"
-    assert lines[0] == f"| 1e-03 | {COMPILED} | 120 (62 - 250) * | 7 (3.5 - 14) |"
-    assert lines[1] == f"| 1e-03 | {FIXED} | 0.5 (0.25 - 1) | - |"
-    assert len(lines) == 2
-
-
 @pytest.mark.parametrize(("count", "tolerance"), [(25, 1e-6), (100, 1e-9)])
 def test_a_breakpoint_of_many_drives_costs_few_evaluations(count, tolerance):
     """About one step of the pair of order 5 each, as the surface at its end serves the next."""
@@ -127,24 +96,3 @@ def test_a_breakpoint_of_many_drives_costs_few_evaluations(count, tolerance):
     path = path_of(many, surface_of(many))(tolerance=tolerance)
     assert len(path.events) > 0
     assert path.evaluations < 8.5 * (len(many.breakpoints) - 1)
-
-
-@pytest.mark.parametrize("counts", [["0"], ["1", "10001"], ["-3"]])
-def test_counts_that_make_no_sense_are_refused(counts, monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["paths.py", "--counts", *counts])
-    with pytest.raises(SystemExit) as end:
-        paths.main()
-    assert end.value.code == 2
-    assert f"from 1 to 10000, up to which all forces fit in memory; got [{counts[-1]}]" in capsys.readouterr().err
-
-
-def test_one_actuator_by_all():
-    rows = list(Comparison(problem(1, STARTS[1])).rows())
-    work = {(row.method, row.target): row.work for row in rows}
-    assert all(row.ratio[0] == 1 for row in rows if row.method == OURS)
-    assert all(row.ratio[1] > 0 for row in rows)
-    for target in TARGETS:
-        assert work[OURS, target] < work[SCIPY, target]
-    # First order: a thousandth of the error takes a thousand times the steps.
-    assert work[COMPILED, 1e-9] == pytest.approx(1e3 * work[COMPILED, 1e-6], rel=0.1)
-    assert [row.extrapolated for row in rows if row.method == COMPILED] == [False, False, True]

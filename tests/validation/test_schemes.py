@@ -1,6 +1,6 @@
 """The schemes with fixed steps: "fixed" is of order 1 and tends to scheme "events"; "paper" tends to its own equations.
 
-Steps are halved; a slope is that of log error over log step. Cases as in test_single_stroke and test_two_actuators.
+Steps are halved; a slope is that of log error over log step. The strokes are those of test_single_stroke.
 """
 
 import numpy as np

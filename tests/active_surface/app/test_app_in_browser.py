@@ -19,7 +19,7 @@ from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarning")]
 
-ACTIONS = 30
+ACTIONS = 15
 ACT = """
 const [act, r, text] = arguments, all = [...knobs.values()], knob = all[Math.floor(r[0] * all.length)];
 const said = (control, value, ...kinds) => {

@@ -59,50 +59,19 @@ def test_bad_case_exits_2_with_every_mistake_and_leaves_nothing(command, broken,
     assert list(tmp_path.iterdir()) == [broken]
 
 
-@pytest.mark.parametrize("command", ["run", "check"])
-def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
-    def interrupted(path, **_):
-        raise KeyboardInterrupt
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("coupling.case.read_case", interrupted)
-    monkeypatch.setattr("coupling.case.parse", interrupted)
-    done = CliRunner().invoke(main, [command, "any.toml"])
-    assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
-
-
-def pressed(command, cache):
-    """Ctrl-C for a command once it has printed a line: that line, exit code, output, further errors."""
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
-    command = [sys.executable, "-m", "active_surface", *map(str, command)]
-    pipe = subprocess.PIPE
+@pytest.mark.compiled
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
+def test_ctrl_c_ends_a_command_that_compiles(tmp_path):
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    words = ["run", str(EXAMPLES / "two_actuators.toml"), "--output", str(tmp_path / "out")]
+    command, pipe = [sys.executable, "-m", "active_surface", *words], subprocess.PIPE
     with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=environment) as process:
         line = process.stderr.readline()
         process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=LATEST)
-        return line, process.returncode, output, errors
-
-
-@pytest.mark.compiled
-@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
-@pytest.mark.parametrize(
-    ("command", "file", "end"),
-    [
-        ("run", "two_actuators.toml", "interrupted\n"),
-        pytest.param(
-            *("sweep", "studies/starts.toml", "interrupted; the same command goes on where this one stopped\n"),
-            marks=pytest.mark.slow,
-        ),
-    ],
-)
-def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
-    words = [command, EXAMPLES / file, "--output", tmp_path / "out"]
-    line, code, output, errors = pressed(words, tmp_path / "cache")
     assert line == "Compiling what this case needs for the first time (once, up to some minutes)\n"
-    assert (code, output, errors) == (130, "", end)
-    assert ctrl_c.PATIENCE < 3
-    # No result; a sweep may have begun the file from which it goes on.
-    assert {path.suffix for path in (tmp_path / "out").glob("*")} <= {".sweep"}
+    assert (process.returncode, output, errors) == (130, "", "interrupted\n")
+    assert ctrl_c.PATIENCE < 3 and not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow

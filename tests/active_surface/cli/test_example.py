@@ -70,13 +70,6 @@ def test_a_file_in_place_of_a_folder_leaves_nothing_half_written(tmp_path, place
     assert [file.name for file in tmp_path.iterdir()] == ["meshes"]
 
 
-def test_a_link_to_nowhere_in_place_of_a_file_is_not_followed(tmp_path):
-    Path("one_actuator.toml").symlink_to("nowhere")
-    done = example("one_actuator")
-    assert done.exit_code == 2 and "free; one_actuator.toml is something else already" in done.output
-    assert not Path("nowhere").exists()
-
-
 def test_a_name_that_is_none_leads_to_one():
     done = example("two_actuator")
     assert (

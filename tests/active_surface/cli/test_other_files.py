@@ -75,10 +75,6 @@ def test_another_file_is_named_as_what_it_is(folder: Path, command: str) -> None
         assert message.startswith(f"{name}: 1 mistake\n") and said in message and len(message.splitlines()) == 2
 
 
-def test_a_folder_is_no_case(folder: Path) -> None:
-    assert refused("run", "examples").endswith("is a folder; name a file in it\n")
-
-
 def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
     (folder / "mark.toml").write_bytes(b"\xef\xbb\xbf" + GOOD.replace(" = ", "\t=\t").encode())
     assert CliRunner().invoke(main, ["check", "mark.toml"]).exit_code == 0

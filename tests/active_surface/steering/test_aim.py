@@ -14,7 +14,7 @@ from active_surface.steering.aiming import aim_over
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.objectives import SAMPLES
 from active_surface.steering.paths import Paths, cost
-from active_surface.steering.robustness import REPORTED, SEARCHED, Disturbance, deviations, draws
+from active_surface.steering.robustness import REPORTED, SEARCHED, deviations, draws
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
@@ -182,12 +182,6 @@ def test_a_part_that_is_lost_costs_more_than_one_that_moves_and_that_more_than_o
         moves = dataclasses.replace(slide, position=np.array([[0.0, 2 * size]]), velocity=np.array([[fast, 0.0]]))
         assert 2 * size < cost(moves, (0.0, 0.0), 1e-3, size, 1e-7) < cost(later, (0.0, 0.0), 1e-3, size, 1e-7)
     assert cost(later, (0.0, 0.0), 1e-3, size, 1e-7) < cost(lost, (0.0, 0.0), 1e-3, size, 1e-7)
-
-
-@pytest.mark.compiled
-def test_paths_of_a_case_are_those_of_a_run(case, surface):
-    (path,) = Paths(case, surface).of([(case.actuators, Disturbance())])
-    assert path.position.tobytes() == follow_part(case, surface, build_friction(case)).position.tobytes()
 
 
 @pytest.mark.slow

@@ -58,15 +58,6 @@ def test_records_do_not_depend_on_the_chunk(engine):
 
 
 @pytest.mark.slow
-def test_the_plate_stretches(engine):
-    """The linear plate's paths are others."""
-    case = engine.study.case
-    linear = case.model_copy(update={"plate": case.plate.model_copy(update={"theory": "linear"})})
-    one, other = run_case(case).trajectory, run_case(linear).trajectory
-    assert np.hypot(*(one.position[-1] - other.position[-1])) > 0.05 * one.path_length
-
-
-@pytest.mark.slow
 def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
     text = '[[axes]]\nfield = "run.duration"\nvalues = ["1 ms", "4 ms"]\n'
     engine = Engine(read_study(written(tmp_path, text, CASE.replace('"2000 Hz"', '"2000 Hz"\ncycles = 20'))))

@@ -145,28 +145,6 @@ def test_a_table_whose_file_was_removed_meanwhile_is_in_use(tmp_path, monkeypatc
         pass
 
 
-def test_a_study_that_grew_after_a_stop_goes_on_from_its_finished_paths(tmp_path, monkeypatch):
-    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 1)
-    mass = '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg"]\n'
-    records, computed = Engine.records, []
-
-    def stopped(self, numbers):
-        if computed == [0]:
-            raise KeyboardInterrupt
-        computed.extend(numbers)
-        return records(self, numbers)
-
-    monkeypatch.setattr(Engine, "records", stopped)
-    with pytest.raises(KeyboardInterrupt):
-        run_study(read_study(written(tmp_path, mass, PLATFORM)), tmp_path / "out")
-    monkeypatch.setattr(Engine, "records", lambda self, numbers: computed.extend(numbers) or records(self, numbers))
-    grown = read_study(written(tmp_path, mass.replace('["', '["9e-9 kg", "'), PLATFORM))
-    run_study(grown, tmp_path / "out").dataset.close()
-    assert computed == [0, 0, 2]  # of the second study the path of 1e-9 kg is there
-    run_study(grown, tmp_path / "fresh").dataset.close()
-    assert (tmp_path / "out" / "study.nc").read_bytes() == (tmp_path / "fresh" / "study.nc").read_bytes()
-
-
 def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):
     monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))

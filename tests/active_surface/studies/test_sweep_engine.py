@@ -18,8 +18,7 @@ from active_surface.studies.validity import corners
 from coupling import batch, report, solved_plates
 
 
-@pytest.mark.parametrize("failure", [ValueError, ZeroDivisionError, RuntimeError])
-def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, failure):
+def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch):
     study = read_study(
         written(tmp_path, '[[axes]]\nfield = "part.mass"\nrange = ["1e-9 kg", "9e-9 kg"]\ncount = 9\n', PLATFORM)
     )
@@ -27,7 +26,7 @@ def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, fail
 
     def failing(surface, parts, *rest):
         if any(abs(part.mass - 4e-9) < 1e-12 for part in parts):
-            raise failure("it went wrong")
+            raise ZeroDivisionError("it went wrong")
         return many(surface, parts, *rest)
 
     monkeypatch.setattr(batch, "simulate_many", failing)

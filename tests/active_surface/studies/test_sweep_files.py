@@ -84,27 +84,6 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
     assert len(found) == 3
 
 
-@pytest.mark.slow
-def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path):
-    fewer, other = MASS.replace("count = 9", "count = 8"), PLATFORM.replace("20 nN", "30 nN")
-    lost = "points, 7 of which are not in this study: --overwrite drops these and keeps the other 2 paths"
-    others = [
-        (fewer, other, "case and points: --overwrite replaces it"),
-        (MASS, other, "case: --overwrite replaces it"),
-        (fewer, PLATFORM, lost),
-    ]
-    assert swept(tmp_path).exit_code == 0
-    kept = (tmp_path / "out" / "study.nc").read_bytes()
-    for text, case, said in others:
-        command = ["sweep", str(written(tmp_path, text, case)), "-o", str(tmp_path / "out")]
-        done = CliRunner().invoke(main, command)
-        assert done.exit_code == 2 and f"whose study.nc is of other {said}" in done.output
-        assert (tmp_path / "out" / "study.nc").read_bytes() == kept
-    assert CliRunner().invoke(main, [*command, "--overwrite"]).exit_code == 0
-    assert (tmp_path / "out" / "study.nc").read_bytes() != kept
-    assert CliRunner().invoke(main, command).exit_code == 0
-
-
 def test_the_picture_of_a_run_is_not_replaced(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "study.png").write_text("mine")

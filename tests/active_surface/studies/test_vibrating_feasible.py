@@ -8,7 +8,6 @@ from click.testing import CliRunner
 from radial_vibration import RadialDisc
 
 from active_surface.cli.program import main
-from active_surface.studies.feasibility import feasibility
 from active_surface.studies.feasibility.case import _areas
 from active_surface.studies.feasibility.ground import make_ground
 from coupling import build_drives
@@ -50,7 +49,7 @@ def lost_rings(frequencies, amplitude):
 def test_the_curve_of_losses_has_the_resonance():
     """Of a steady sine, from half the first frequency to twice that; at FIRST it comes off nearly everywhere."""
     amplitude = 0.3 * (ADHESION / MASS + GRAVITY) / (2 * np.pi * FIRST) ** 2
-    found = feasibility(vibrating(FIRST, 2 * amplitude, cycle="cosine"), 0.5 * FIRST, 2 * FIRST, 40, areas=True).areas
+    found = areas_alone(vibrating(FIRST, 2 * amplitude, cycle="cosine"), np.geomspace(0.5, 2, 31))
     truth = lost_rings(found.factors * FIRST, amplitude)
     edge = 2 * np.sqrt(np.pi * np.maximum(truth, found.spacing**2))  # cuts squares
     assert (np.abs(found.lost_area - truth) < 0.3 * edge * found.spacing).all()
@@ -59,11 +58,11 @@ def test_the_curve_of_losses_has_the_resonance():
     assert middle == found.own.lost_area
 
 
-def areas_alone(case):
-    """From half to four times a case's frequency, without the map, whose paths take much longer here."""
+def areas_alone(case, factors):
+    """At factors of a case's frequency, without the map, whose paths take much longer here."""
     drive = build_drives(case)[0]
-    window, factors = 1 / drive.frequency, np.geomspace(0.5, 4, 4)
-    ground = make_ground(case, (0.5, 4.0), (1.0, 1.0), window, 2 * window)
+    window = 1 / drive.frequency
+    ground = make_ground(case, (factors[0], factors[-1]), (1.0, 1.0), window, 2 * window)
     return _areas(ground, window, drive.stroke_time, factors, 40)
 
 
@@ -71,7 +70,9 @@ def areas_alone(case):
 @pytest.mark.slow
 def test_without_haste_areas_are_those_of_the_quasi_static_plate():
     frequency, stroke = 1e-3 * FIRST, 60e-6
-    slow, static = (areas_alone(vibrating(frequency, stroke, inertia)) for inertia in (True, False))
+    slow, static = (
+        areas_alone(vibrating(frequency, stroke, inertia), np.geomspace(0.5, 4, 4)) for inertia in (True, False)
+    )
     assert (static.slipping.peak > 0).any() and (static.lost_area > 0).any()
     for name in ("slipping", "feasible"):
         mine, its = getattr(slow, name), getattr(static, name)

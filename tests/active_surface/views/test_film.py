@@ -160,12 +160,6 @@ def test_the_trail_ends_at_the_path_and_is_dense():
     assert trail[:, 0] == pytest.approx(np.interp(then, scene.run.time, LONG[:, 0]))
 
 
-def test_one_stored_step_is_a_moment():
-    scene = scene_of(made_run([[0.0, 0.0]], lambda points: hill(points, 1e-5)))
-    (moment,) = scene.moments(pace_of(scene.run.time, 30.0, None).times)
-    assert moment.under == pytest.approx(1e-5) and len(scene.trail[0]) == 0
-
-
 def test_the_part_and_its_trail_are_where_the_integrator_found_it_between_stored_steps():
     run = made_run(LONG[[0, 4]], lambda points: hill(points, 1e-5), time=[0.0, 4e-3], state=1)
     bent = LONG + np.array([[0, 0], [0, 1e-4], [0, 2e-4], [0, 1e-4], [0, 0]])
@@ -214,15 +208,6 @@ def test_a_size_is_two_numbers_of_pixels():
             size_of(text)
     with pytest.raises(ValueError, match="got 10x20"):
         size_of((10, 20))
-
-
-def test_heights_are_drawn_larger_by_a_round_number_only_where_they_are_small():
-    def drawn(height):
-        return scene_of(made_run(LONG, lambda points: hill(points, height))).exaggeration
-
-    assert [drawn(h) for h in (1e-3, 1e-4, 1e-5, 1e-6)] == pytest.approx([1, 2, 20, 200])
-    flat = scene_of(made_run(LONG, lambda points: np.zeros(len(points))))
-    assert flat.flat and flat.exaggeration == 1
 
 
 def test_a_short_path_is_shown_in_a_window_and_a_part_at_rest_on_the_whole_plate():

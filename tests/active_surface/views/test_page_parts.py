@@ -4,10 +4,8 @@ import base64
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
-from active_surface.cli.program import main
 from active_surface.views.geometry import (
     coarse,
     exaggeration,
@@ -20,7 +18,7 @@ from active_surface.views.geometry import (
 )
 from active_surface.views.modes import SEEN, modes_of
 from active_surface.views.pages.packed import packed, packed_rows
-from active_surface.views.pages.page_file import notes_of, rows_of, trust_of, write_page
+from active_surface.views.pages.page_file import trust_of, write_page
 from active_surface.views.pages.run_data import _around
 from active_surface.views.pages.sweep_paths import spread
 from active_surface.views.result_file import result_of
@@ -175,11 +173,6 @@ def test_no_cells_are_chosen_where_none_are_wanted():
     assert not spread((4, 4), 0).any()
 
 
-def test_texts_are_escaped():
-    assert "<script" not in rows_of([("<script>", "a & <b>")]) + notes_of(["<script>x</script>"])
-    assert notes_of([]) == ""
-
-
 def test_trust_is_one_line_and_the_warnings():
     assert "<strong>Trust: no warnings.</strong> It moves by 2 µm." in trust_of("it moves by 2 um", [])
     warned = trust_of("it holds", ["<b> 3 uN", "more"])
@@ -247,11 +240,3 @@ def test_a_case_or_study_file_stands_for_its_result(tmp_path):
     found = result_of(tmp_path / "one.toml", results)
     assert (found.path, found.page) == (results / "one", results / "one.html")  # of which either file may be partial
     assert result_of(tmp_path / "many.toml", results)[:3] == (tmp_path / "many.nc", tmp_path / "many.sweep.html", True)
-
-
-@pytest.mark.parametrize("name", ["x.part.vtkhdf", "x.nc", "x"])
-def test_a_page_replaces_no_other_kind_of_file(tmp_path, name):
-    (tmp_path / name).write_text("kept")
-    said = CliRunner().invoke(main, ["view", str(tmp_path / "one"), "-o", str(tmp_path / name)])
-    assert said.exit_code == 2 and "must end in .html" in said.output
-    assert (tmp_path / name).read_text() == "kept"

@@ -75,9 +75,9 @@ def findings_of(folder, name, *chosen):
         return findings, sweep_pictures(findings, *chosen)
 
 
-RUNS = {"plate": PLATE, "stays": STAYS, "platform": PLATFORM, "off": COMES_OFF, "many": MANY}
+RUNS = {"stays": STAYS, "platform": PLATFORM, "off": COMES_OFF, "many": MANY}
 SOME_SLOW = [("off", 60), *(pytest.param(*one, marks=pytest.mark.slow) for one in (("stays", 85), ("platform", 60)))]
-SOME_SLOW += [pytest.param(*one, marks=pytest.mark.slow) for one in (("plate", 180), ("many", 180))]
+SOME_SLOW.append(pytest.param("many", 180, marks=pytest.mark.slow))
 
 
 @pytest.mark.compiled
@@ -164,7 +164,6 @@ def test_events_are_marked_where_they_happen(folder):
             pytest.param(*one, marks=pytest.mark.slow)
             for one in (
                 ("one", (), ["distance", "outcome"], 180),
-                ("two", (None, None, "largest_load"), ["largest_load"], 180),
                 ("three", ("mass",), ["distance", "outcome"], 60),
                 ("points", (), ["distance", "outcome"], 180),
                 ("starts", (), ["basins", "nearness"], 60),

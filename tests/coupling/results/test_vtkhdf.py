@@ -171,15 +171,14 @@ def test_steps_are_flushed_at_least_every_half_second(tmp_path: Path, monkeypatc
             clock[0] += 0.1
 
 
-@pytest.mark.parametrize("block", [1, 3, N_STEPS])
-def test_steps_written_together_are_those_written_one_by_one(tmp_path: Path, block: int) -> None:
+def test_steps_written_together_are_those_written_one_by_one(tmp_path: Path) -> None:
     write_plate(tmp_path)
     write_part(tmp_path)
     steps = range(N_STEPS)
     together = tmp_path / "together"
     together.mkdir()
     with vtkhdf.plate_file(together, "run", POINTS, TRIANGLES) as plate, vtkhdf.part_file(together, "run") as part:
-        for some in (steps[first : first + block] for first in range(0, N_STEPS, block)):
+        for some in (steps[first : first + 3] for first in range(0, N_STEPS, 3)):
             times = [TIMES[k] for k in some]
             fields = [part_fields(k) for k in some]
             plate.append(times, deflection=[bump(k) for k in some], gradient=[gradient(k) for k in some])
@@ -211,14 +210,13 @@ def test_there_are_as_many_times_as_steps_between_flushes_too(tmp_path: Path) ->
             assert len(steps["Values"]) == steps.attrs["NSteps"]
 
 
-@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
-def test_an_exception_leaves_the_steps_so_far_and_the_old_result(tmp_path: Path, error: type[BaseException]) -> None:
+def test_an_exception_leaves_the_steps_so_far_and_the_old_result(tmp_path: Path) -> None:
     write_plate(tmp_path, steps=3)
     old = (tmp_path / "run.plate.vtkhdf").read_bytes()
-    with pytest.raises(error), vtkhdf.plate_file(tmp_path, "run", POINTS, TRIANGLES) as plate:
+    with pytest.raises(KeyboardInterrupt), vtkhdf.plate_file(tmp_path, "run", POINTS, TRIANGLES) as plate:
         for k in range(11):
             plate.append(TIMES[k], deflection=bump(k), gradient=gradient(k))
-        raise error
+        raise KeyboardInterrupt
     partial = tmp_path / "run.partial.plate.vtkhdf"
     assert names(tmp_path) == [partial.name, "run.plate.vtkhdf"]
     assert (tmp_path / "run.plate.vtkhdf").read_bytes() == old

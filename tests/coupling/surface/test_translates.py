@@ -75,7 +75,6 @@ def test_near_the_ends_of_a_lattice_cells_are_their_own(surface, shapes):
 
 
 LATTICES = {
-    "rigid": ((14, 14), (PITCH, PITCH), np.inf),
     "very soft": ((14, 14), (PITCH, PITCH), 1e-2),
     "narrow and soft": ((14, 40), (PITCH, PITCH / 3), 100.0),
 }

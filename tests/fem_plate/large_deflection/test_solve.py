@@ -30,10 +30,9 @@ def test_the_reaction_of_a_held_centre(support, membrane):
     assert state.membrane == membrane
 
 
-@pytest.mark.parametrize("support", [C, S])
-def test_a_movable_rim(support):
-    expected = radial.disc(height=1.0, support=support, movable=True)
-    state = Plate(disc(1.0, 0.15), UNIT, support).large_deflection([(0, 0)], "movable").solve([1.0])
+def test_a_movable_rim():
+    expected = radial.disc(height=1.0, support=S, movable=True)
+    state = Plate(disc(1.0, 0.15), UNIT, S).large_deflection([(0, 0)], "movable").solve([1.0])
     assert state.reactions == pytest.approx([expected.force], rel=1e-6)
     assert difference(state, expected) < 1e-6
 
@@ -59,11 +58,7 @@ def test_an_annulus(held):
     assert state.membrane == "plane-stress"
     assert 0.5 < np.abs(expected.w).max() < 1
     assert difference(state, expected) < (5e-5 if held else 2e-6)
-
-
-def test_two_actuators():
-    state = Plate(disc(1.0, 0.15), UNIT).large_deflection(TWO).solve([1, -0.6])
-    assert state.reactions == pytest.approx([135.01462, -113.52870], rel=1e-6)
+    assert state.stretching_energy == pytest.approx(expected.stretching, rel=1e-3 if held else 1e-5)
 
 
 def test_without_stretching_it_is_the_linear_plate():

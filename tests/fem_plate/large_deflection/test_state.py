@@ -117,16 +117,6 @@ def test_pressure_on_a_free_plate_is_borne_by_its_actuators():
     assert np.abs(points.T @ state.reactions).max() < 1e-6 * 20 * np.pi
 
 
-@pytest.mark.slow
-def test_the_estimate_is_honest():
-    """Within a factor of five of the error, by cells halved twice more."""
-    large = Plate(disc(1.0, 0.5), UNIT).large_deflection(TWO)
-    heights = np.array([2.0, -1.0])
-    state = large.solve(heights)
-    error = large.solved(heights, 0.0, 0, 2).difference(state)
-    assert error / 5 < state.error_estimate < 5 * error
-
-
 def test_a_tolerance_is_met():
     plate = Plate(disc(1.0, 0.4), UNIT, tolerance=2e-7)
     state = plate.large_deflection([(0, 0)]).solve([1.0])
