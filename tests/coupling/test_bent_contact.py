@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from coupling import Case, build_friction, run_case
+from coupling import Case, build_friction, run_case, warnings
 from coupling.case import InputError
 from coupling.part import bent_under
 from particle import polynomial_surface
@@ -92,8 +92,8 @@ def test_a_run_s_margins_are_those_of_the_local_law():
     flat = run_case(Case.model_validate(PLATE))
     assert margin.value > 1.05 * flat.summary.margins.slip.value
     assert result.summary.thresholds.slips_from < 0.98 * flat.summary.thresholds.slips_from
-    assert any("flat faces" in text for text in flat.warnings)
-    assert not any("flat faces" in text for text in result.warnings)
+    assert any("flat faces" in text for text in warnings(flat.summary))
+    assert not any("flat faces" in text for text in warnings(result.summary))
 
 
 @pytest.mark.parametrize(
