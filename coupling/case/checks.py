@@ -21,7 +21,7 @@ from coupling.case.actuators import (
     must_be_inside,
 )
 from coupling.case.friction import KogutEtsionCase, TableCase
-from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, PlateCase, PlatformCase, ShapeCase
+from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, MotionCase, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
 from coupling.case.tables import CaseTables, RunCase
 from coupling.case.values import length_text, unreadable
@@ -79,6 +79,9 @@ def _face(tables: CaseTables) -> Iterator[Mistake]:
     """Yield what does not go with a part that has a footprint, or none."""
     run, friction, face = tables.run, tables.friction, tables.part.face
     if face is None:
+        motion = getattr(tables.plate, "motion", None)
+        if isinstance(motion, MotionCase) and motion.turn is not None:
+            yield ("plate", "motion", "turn"), "must not be given without a footprint in [part]: a point has no heading"
         if run.after_tipping == "ignore":
             yield ("run", "after_tipping"), 'must be "stop" without a footprint in [part]: a point does not tip'
         return
