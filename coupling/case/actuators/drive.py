@@ -119,6 +119,7 @@ class DriveCase(Table):
 
     in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
     owner: ClassVar[str] = "an actuator"
+    height: ClassVar[str] = 'a length such as "150 um"'
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises; 0: it keeps the plate at 0; negative: down."""
@@ -152,7 +153,7 @@ class DriveCase(Table):
             yield key, f"must not be given with {_NAMED[drivers[0]]}; {only}"
         if not drivers:
             other = 'a force such as "1 mN", ' * ("force" in cls.model_fields) + "a table or segments instead"
-            yield "stroke", f"is missing; it must be {expected_of(cls.model_fields['stroke'])}, or use {other}"
+            yield "stroke", f"is missing; it must be {cls.height}, or use {other}"
         if drivers and drivers[0] in ("table", "segments"):
             yield from cls._beside_times(drivers[0], given)
         else:

@@ -62,6 +62,7 @@ class TurnCase(DriveCase):
     """What turns a platform about its origin: a drive whose heights are angles, in rad."""
 
     owner: ClassVar[str] = "a turn"
+    height: ClassVar[str] = 'an angle such as "90 deg"'
 
     stroke: Angle | None = Field(default=None, examples=["5 deg"])
     """How far it turns, counter-clockwise; negative: clockwise."""
