@@ -81,18 +81,26 @@ class TrackFit:
 
     @property
     def away(self) -> FloatArray:
-        """Path minus track (k, 2) [m]; nan where a place was not measured."""
-        return np.asarray(self.trajectory.at(self.track.time).position - self.track.position)
+        """Path minus track (k, 2) [m], with headings (k, 3), as lengths; nan where it was not measured."""
+        return self.track.away(self.trajectory, self.case.part.gyration)
 
     @property
     def residuals(self) -> FloatArray:
-        """Path minus track (m,) [m]."""
-        return self.away[np.isfinite(self.track.position)]
+        """Path minus track (m,) [m], headings as lengths."""
+        return self.away[self.track.measured]
 
     @property
     def residual(self) -> float:
         """Root mean square of the residuals [m]."""
         return float(np.sqrt(np.mean(self.residuals**2)))
+
+    @property
+    def heading_residual(self) -> float | None:
+        """Root mean square of the residuals of headings [rad]; None: they were not measured."""
+        if self.track.heading is None:
+            return None
+        turns = self.away[:, 2] / self.track.lever(self.case.part.gyration)
+        return float(np.sqrt(np.nanmean(turns**2)))
 
     @property
     def succession(self) -> float:

@@ -40,7 +40,10 @@ def check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str])
             raise ValueError(
                 f"Input {which} must end within the run's duration, {case.run.duration:g} s; got {end:g} s"
             )
-        measured = int(np.isfinite(track.position).sum())
+        if track.heading is not None and case.part.face is None:
+            without = f"the part of case {case.name} has no footprint, and a point does not turn"
+            raise ValueError(f"Input {which} must have no heading: {without}")
+        measured = int(track.measured.sum())
         if measured <= len(fields) or end <= 0:
             raise ValueError(
                 f"Input {which} must have more places than free fields, {len(fields)}, and later ones than 0 s; "

@@ -7,7 +7,9 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
+from active_surface.arrays import FloatArray
 from active_surface.identification.estimate import TrackFit
 from active_surface.identification.result import Identified
 from common import Drawing, draw, figure_of, unit_for
@@ -21,7 +23,7 @@ MEASURED: Final[dict[str, Any]] = {
     "markeredgewidth": 0,
     "alpha": 0.7,
 }
-COLOURS: Final = ("#1b4f9c", "#c8371b")  # of x and y
+COLOURS: Final = ("#1b4f9c", "#c8371b", "#2d7d46")  # of x, y and heading
 ROW, LEAST_HEIGHT = 2.6, 3.8  # in, of one of several tracks, and of all
 WORDS: Final[dict[str, Any]] = {"fontsize": 9, "parse_math": False}
 
@@ -68,7 +70,7 @@ def _draw_plane(axes: Axes, fit: TrackFit, per_si: float) -> None:
 
 
 def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool) -> None:
-    """Draw x and y over time, and path minus track."""
+    """Draw x, y and heading over time, and path minus track, headings as lengths."""
     track, path = fit.track, fit.trajectory
     times = np.linspace(0, track.time[-1], SAMPLES)
     clock, unit = unit_for(times, "s"), unit_for(track.position[np.isfinite(track.position)], "m")
@@ -86,11 +88,28 @@ def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool) -> None:
             measured, track.position[:, axis] * unit.per_si, color=colour, **MEASURED, label=f"{name} of the track"
         )
         rest.plot(measured, away[:, axis] * left.per_si, color=colour, **MEASURED)
+    keys = places.get_lines()
+    if track.heading is not None:
+        keys += _draw_headings(places, fit, times, clock.per_si)
+        rest.plot(track.time * clock.per_si, away[:, 2] * left.per_si, color=COLOURS[2], **MEASURED)
     rest.axhline(0, color="black", linewidth=0.8)
     places.set_ylabel(f"place [{unit.name}]")
     rest.set_ylabel(f"path - track [{left.name}]")
     if legend:
-        places.legend(frameon=False, fontsize=8)
+        places.legend(handles=keys, frameon=False, fontsize=8)
     for axes in (places, rest):
         axes.set_xlabel(f"time [{clock.name}]")
         axes.grid(alpha=0.3)
+
+
+def _draw_headings(places: Axes, fit: TrackFit, times: FloatArray, per_second: float) -> list[Line2D]:
+    """Draw the heading over time on a scale at the right, that of the track in the path's whole turns; return keys."""
+    turned, exact = fit.trajectory.at(times).heading, fit.trajectory.at(fit.track.time).heading
+    assert turned is not None and exact is not None
+    measured = exact - fit.away[:, 2] / fit.track.lever(fit.case.part.gyration)
+    axes = places.twinx()
+    look: dict[str, Any] = {"color": COLOURS[2]}
+    axes.plot(times * per_second, np.degrees(turned), linewidth=1.2, **look, label="heading of the path")
+    axes.plot(fit.track.time * per_second, np.degrees(measured), **look, **MEASURED, label="heading of the track")
+    axes.set_ylabel("heading [deg]", **look)
+    return [*axes.get_lines()]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -127,6 +128,7 @@ class Identified:
             "tracks": {
                 fit.name: {
                     "residual": fit.residual,
+                    "heading_residual": fit.heading_residual,
                     "succession": fit.succession,
                     "measured": len(fit.residuals),
                 }
@@ -141,8 +143,12 @@ class Identified:
         rows = [("field", f"{one.label} = {one.text}") for one in self.estimates]
         for fit in self.fits:
             of = f" of {fit.name}" if len(self.fits) > 1 else ""
-            size = quantity_text(fit.residual, "m")
-            rows.append(("residual", f"{size} root mean square of {len(fit.residuals)} places{of}"))
+            size, headings = quantity_text(fit.residual, "m"), int(fit.track.measured[:, 2:].sum())
+            count = f"{len(fit.residuals) - headings} places"
+            if fit.heading_residual is not None:
+                turn = f"{math.degrees(fit.heading_residual):.3g} deg"
+                count += f" and {headings} headings as lengths, {turn} of these alone"
+            rows.append(("residual", f"{size} root mean square of {count}{of}"))
         return [*rows, ("paths", str(self.paths))]
 
     def written(self, folder: Path, overwrite: bool = False) -> Identified:

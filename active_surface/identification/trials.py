@@ -61,7 +61,7 @@ class Trials:
     def __init__(self, recordings: Sequence[Recording], shared: int, loss: Loss, threads: int | None) -> None:
         self.recordings, self.shared, self.loss, self._threads = list(recordings), shared, loss, threads
         tracks, slots = len(recordings), len(recordings[0].parameters)
-        sizes = np.array([np.isfinite(one.track.position).sum() for one in recordings])
+        sizes = np.array([one.track.measured.sum() for one in recordings])
         ends = np.cumsum(sizes).tolist()
         self.size = ends[-1]  # m
         self.rows = [slice(end - size, end) for end, size in zip(ends, sizes.tolist(), strict=True)]  # of each track
@@ -208,13 +208,13 @@ class Trials:
 
     def _tried(self, number: int, rows: FloatArray) -> FloatArray:
         """Residuals (k, m) of one track at shares (k, s); inf where a case cannot be run."""
-        known, track = self._known[number], self.recordings[number].track
-        measured = np.isfinite(track.position)
+        known, (case, _, track, _) = self._known[number], self.recordings[number]
+        measured = track.measured
         runs = {row.tobytes(): self.run(number, row) for row in rows if row.tobytes() not in known}
         able = {key: run for key, run in runs.items() if run is not None}
         new = {key: np.full(int(measured.sum()), np.inf) for key in runs}
         for key, path in zip(able, self.paths(number, list(able.values())), strict=True):
-            new[key] = (path.at(track.time).position - track.position)[measured]
+            new[key] = track.away(path, case.part.gyration)[measured]
         known |= new
         found = np.array([known[row.tobytes()] for row in rows])
         for key in list(known)[:-REMEMBERED]:

@@ -9,7 +9,8 @@ from .task import Route as Route, Task as Task
 # Not public: for the packages that build on this one.
 from .aiming import aim_over as aim_over
 from .following import ATTEMPTS as ATTEMPTS, next_leg as next_leg, progress_of as progress_of
-from .read import read_measured as read_measured, read_place as read_place, read_settings as read_settings
+from .read import read_heading as read_heading, read_measured as read_measured
+from .read import read_place as read_place, read_settings as read_settings
 from . import report as report
 from .objectives import prepared as prepared
 from .settings import AimTables as AimTables

@@ -15,13 +15,13 @@ from typing import TypeVar
 
 import numpy as np
 
-from active_surface.steering.legs import Approach, Leg, end_of, scheduled
+from active_surface.steering.legs import Approach, Leg, scheduled
 from active_surface.steering.objectives import prepared
 from active_surface.steering.paths import Paths, path_of, settled
 from active_surface.steering.picture import draw_aim, draw_plan
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
-from active_surface.steering.task import Route, Task
+from active_surface.steering.task import Route, Task, end_of
 from coupling import ProgressCallback, check_free, no_progress, run_case, warnings
 from coupling.case import write_case
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
@@ -255,13 +255,13 @@ def _found(
 
 
 def _scatter(result: SteeringResult, surface: SurfaceMotion, threads: int | None) -> Scatter:
-    """The ends of disturbed runs of a case with the best drives, and their distances from the last target."""
+    """The ends of disturbed runs of a case with the best drives, and how far off the last target they are."""
     case, settings, paths = result.case, result.settings, Paths(result.case, surface, threads)
     ways = draws(settings.scatter, deviations(case, settings.disturbances), settings.seed, REPORTED)
     trajectories = paths.of([(case.actuators, way) for way in ways])
     ends = np.array([path.position[-1] for path in trajectories])
     lost = np.array([path.time[-1] < case.run.duration for path in trajectories])
-    return Scatter(ends, np.where(lost, np.inf, np.hypot(*(ends - result.targets[-1]).T)))
+    return Scatter(ends, np.where(lost, np.inf, [result.off(path) for path in trajectories]))
 
 
 def _drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 from active_surface.steering.knobs import Knobs, Stop, at_rest, is_schedulable, own_drives, shortest
 from active_surface.steering.paths import Paths, cost, driven, path_of, settled
 from active_surface.steering.search import Search
-from active_surface.steering.task import Place, Task
+from active_surface.steering.task import Task
 from coupling import ProgressCallback, build_drive
 from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
 from particle import SurfaceMotion, Trajectory, unbroken
@@ -118,12 +118,11 @@ class Approach:
             return False
         way = self._followed((Leg(0.0, own, moving),), ())
         self.paths += 1
-        away = math.dist(task.case.part.position, task.target)
-        if not settled(way.path) or way.cost >= away:
+        if not settled(way.path) or way.cost >= task.away:
             return False
         if not settings.is_robust:
             self._keep(way)
-        return way.cost <= NEAR * away
+        return way.cost <= NEAR * task.away
 
     def _search(
         self, task: Task, chain: Way | None, at_most: int, around: bool = False, wide: bool = False
@@ -162,7 +161,7 @@ class Approach:
         case, task = self._task.case, self._task
         case = scheduled(case, legs, self._horizon) if len(legs) > 1 else driven(case, legs[0].actuators)
         path = path_of(case, self._surface)
-        away = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
+        away = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance, task.turn)
         return Way(legs, case, path, away, stops)
 
     def _keep(self, way: Way) -> None:
@@ -175,7 +174,7 @@ class Approach:
             return None
         left = self._horizon - chain.end
         try:
-            task = self._task.within(left, end_of(chain.path))
+            task = self._task.within(left, chain.path)
         except ValueError:  # no way leads on from here, as from above the only actuator
             return None
         return task if left >= _min_duration(task) else None
@@ -193,12 +192,6 @@ def _min_duration(task: Task) -> float:
 def _moving(actuators: tuple[ActuatorCase, ...]) -> tuple[int, ...]:
     """The numbers of actuators whose strokes go up and down."""
     return tuple(k for k, actuator in enumerate(actuators) if is_schedulable(actuator) and actuator.stroke)
-
-
-def end_of(path: Trajectory) -> Place:
-    """Where a path ends [m]."""
-    x, y = path.position[-1].tolist()
-    return x, y
 
 
 def scheduled(case: Case, legs: Sequence[Leg], duration: float) -> Case:

@@ -19,7 +19,7 @@ from active_surface.steering.robustness import (
     stroke_room,
 )
 from active_surface.steering.settings import Settings
-from active_surface.steering.task import Task, able
+from active_surface.steering.task import Task, able, offset_of
 from coupling import answers_drives, build_drives, build_friction, follow_part, shared_surface
 from coupling.case import ActuatorCase, Case
 from particle import AnyDrive, SurfaceMotion, interruptible
@@ -158,14 +158,18 @@ class Objective:
         return driven(self._task.case, self._knobs.actuators(np.clip(np.asarray(values, dtype=float), low, high)))
 
     def evaluate(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """How far off the ends are (n, 2) [m], and the distances (n,) [m]; of disturbed runs the ends' mean counts."""
-        case, target, settings = self._task.case, self._task.target, self._task.settings
+        """How far off the ends are (n, 2) [m], and the distances (n,) [m]; of disturbed runs the ends' mean counts.
+
+        With a heading to reach there is a third column, how far that is off as a length.
+        """
+        case, target, settings, turn = self._task.case, self._task.target, self._task.settings, self._task.turn
         trials = [self._knobs.actuators(row) for row in values]
         trajectories = self._paths.of([(actuators, way) for actuators in trials for way in self._ways])
         size = self._paths.surface.size
-        ends = np.array([path.position[-1] for path in trajectories]).reshape(len(trials), len(self._ways), 2)
-        costs = [cost(path, target, case.run.duration, size, settings.tolerance) for path in trajectories]
-        return ends.mean(axis=1) - target, self._measure(np.array(costs).reshape(ends.shape[:2]))
+        off = np.array([offset_of(path, target, turn) for path in trajectories])
+        costs = [cost(path, target, case.run.duration, size, settings.tolerance, turn) for path in trajectories]
+        each = len(trials), len(self._ways)
+        return off.reshape(*each, -1).mean(axis=1), self._measure(np.array(costs).reshape(each))
 
     def _measure(self, costs: FloatArray) -> FloatArray:
         """What counts of the costs (n, runs) [m] of disturbed runs."""

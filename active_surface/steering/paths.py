@@ -8,6 +8,7 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.steering.robustness import Disturbance, disturbed
+from active_surface.steering.task import Place, Turn, offset_of
 from active_surface.studies import contact_of, start_faults
 from coupling import PathTask, build_drives, build_part, follow, one_blas_thread
 from coupling.case import ActuatorCase, Case
@@ -73,14 +74,19 @@ def driven(case: Case, actuators: tuple[ActuatorCase, ...]) -> Case:
     return case.model_copy(update={"actuators": actuators, "source": None})
 
 
-def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float, tolerance: float) -> float:
-    """The distance [m] of the end from a target [m], and more for a part that has not come to rest there.
+def cost(
+    trajectory: Trajectory, target: Place, duration: float, size: float, tolerance: float, turn: Turn | None = None
+) -> float:
+    """The distance [m] of the end from a target [m] and a heading, and more for a part that has not come to rest there.
 
     size: m, of the surface.  tolerance: m, which only a settled part can reach.
     """
-    away = float(np.hypot(*(trajectory.position[-1] - target)))
+    away = float(np.hypot.reduce(offset_of(trajectory, target, turn)))
     if trajectory.outcome is Outcome.MOVING:
-        away += min(SETTLING * float(np.hypot(*trajectory.velocity[-1])), size)
+        speed = np.hypot(*trajectory.velocity[-1])
+        if turn is not None and trajectory.spin is not None:
+            speed = np.hypot(speed, turn.gyration * trajectory.spin[-1])
+        away += min(SETTLING * float(speed), size)
     elif trajectory.outcome is not Outcome.STUCK:
         return away + size * (LOST + 1 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
     minimum = max(UNSETTLED * size, 2 * tolerance)

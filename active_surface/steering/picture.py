@@ -49,7 +49,7 @@ ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "mar
 def draw_aim(result: Aimed, path: Path) -> Path:
     """Draw the result of a search into a PNG file; return its path."""
     task = result.task
-    ends = f"the part ends {_off(result, task.target)}"
+    ends = f"the part ends {_off(result, 'the target' if task.heading is None else 'target and heading')}"
     return _draw(result, f"{task.name}: {ends if result.reached else f'target missed, {ends}'}", path)
 
 
@@ -60,7 +60,7 @@ def draw_plan(result: Planned, path: Path) -> Path:
     which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets) - 1}"
     tolerance = quantity_text(route.settings.tolerance, "m")
     count = f"{sum(result.reached)} of {len(route.through)} way-points within {tolerance}"
-    return _draw(result, f"{route.name}: {count}; the part ends {_off(result, targets[-1], which)}", path)
+    return _draw(result, f"{route.name}: {count}; the part ends {_off(result, which)}", path)
 
 
 def _draw(result: SteeringResult, title: str, path: Path) -> Path:
@@ -99,8 +99,9 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     A circle that would have to include lost parts is left out. Where all ends are far from the target, draw them around
     their median, with an arrow to the target.
     """
-    circles = {share: away for share in (0.5, 0.9) if np.isfinite(away := scatter.quantile(share))}
     off, end = scatter.ends - target, trajectory.position[-1] - target
+    places = Scatter(scatter.ends, np.where(np.isinf(scatter.distance), np.inf, np.hypot(*off.T)))  # whatever headings
+    circles = {share: away for share in (0.5, 0.9) if np.isfinite(away := places.quantile(share))}
     middle = np.median(np.vstack([off, end]), axis=0)
     spread = float(np.quantile(np.hypot(*(np.vstack([off, end]) - middle).T), SHARE))
     missed = float(np.hypot(*middle)) > FAR * spread
@@ -135,7 +136,7 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     return keys
 
 
-def _off(result: SteeringResult, target: Place, name: str = "the target") -> str:
-    """How far from a target [m] the part ends, in words."""
-    away = float(np.hypot(*(result.trajectory.position[-1] - target)))
+def _off(result: SteeringResult, name: str) -> str:
+    """How far from its last target the part ends, in words."""
+    away = result.off(result.trajectory)
     return f"{quantity_text(away, 'm')} from {name}" if away > NOTHING else f"at {name}"

@@ -24,7 +24,7 @@ from coupling.case import (
     unreadable,
 )
 
-LENGTH = Quantity("m", "150 um")
+LENGTH, ANGLE = Quantity("m", "150 um"), Quantity("rad", "30 deg")
 MEASURED_HEADER = "x [um], y [um]"
 
 
@@ -33,6 +33,7 @@ def read_task(
     target: Place | None = None,
     quantile: float | None = None,
     cvar: float | None = None,
+    heading: float | None = None,
 ) -> Task:
     """Read an aim file or a case file as a task.
 
@@ -46,6 +47,8 @@ def read_task(
         Share of disturbed runs that must end near; replaces the file's quantile or CVaR.
     cvar : float, optional
         The quantile beyond which their mean distance is made small; likewise.
+    heading : float, optional
+        The heading of a part with a footprint at the target, rad; replaces the file's.
 
     Returns
     -------
@@ -59,13 +62,13 @@ def read_task(
     ValueError
         The target does not suit the case.
     """
-    case, settings, own_target = read_settings(path, target is None)
+    case, settings, own_target, own_heading = read_settings(path, target is None)
     goal = target or own_target
     if goal is None:
         raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
     if quantile is not None or cvar is not None:
         settings = Settings(**(dict(settings) | {"quantile": quantile, "cvar": cvar}))
-    return Task(case, goal, settings, Path(path).stem)
+    return Task(case, goal, settings, Path(path).stem, own_heading if heading is None else heading)
 
 
 def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
@@ -90,27 +93,29 @@ def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
     ValueError
         The way-points do not suit the case.
     """
-    case, settings, _ = read_settings(path, False)
+    case, settings, _, heading = read_settings(path, False)
+    if heading is not None:
+        raise ValueError("heading in [aim] must not be given for a plan, whose way-points have none")
     return Route(case, tuple(through), settings, Path(path).stem)
 
 
-def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None]:
-    """The case, the settings and the target [m], if any, in the file at `path`; CaseError with every mistake in it.
+def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None, float | None]:
+    """The case, the settings, the target [m] and the heading [rad], if any, in a file; CaseError with every mistake.
 
     aims: whether its target counts.
     """
     file = parse(path)
     if "aim" not in file.tables:
-        return read_case(path), Settings(), None
+        return read_case(path), Settings(), None, None
     try:
         table = AimTables.model_validate(file.tables, context=UNITS_REQUIRED).aim
         case = _case(Path(path), table)
-        if wrong := list(mistakes(case, table, table.target if aims else None)):
+        if wrong := list(mistakes(case, table, table.target if aims else None, table.heading)):
             raise Faults((("aim", key), message) for key, message in wrong)
     except (ValidationError, Faults) as error:
         raise file.error(mistakes_of(error, AimTables, file.tables)) from None
     own = {key: getattr(table, key) for key in Settings.model_fields}
-    return case, Settings.model_construct(**own), table.target
+    return case, Settings.model_construct(**own), table.target, table.heading
 
 
 def _case(path: Path, table: AimTable) -> Case:
@@ -130,6 +135,14 @@ def read_place(text: str, option: str) -> Place:
         expected = 'two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"'
         raise ValueError(f"{option} must be {expected}; got {quoted(text)}") from None
     return x, y
+
+
+def read_heading(text: str, option: str) -> float:
+    """The angle [rad] in a text such as 30: in deg or with its unit; ValueError names the option."""
+    try:
+        return ANGLE.parse(text if text[-1:].isalpha() else f"{text} deg")
+    except ValueError:
+        raise ValueError(f'{option} must be an angle such as 30 (deg) or "0.5 rad"; got {quoted(text)}') from None
 
 
 def read_measured(path: str | os.PathLike[str]) -> list[Place]:

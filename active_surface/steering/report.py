@@ -24,6 +24,9 @@ def figures(result: Aimed) -> dict[str, Any]:
     return {
         "target": result.task.target,
         "end_position": result.trajectory.position[-1].tolist(),
+        "heading": result.task.heading,
+        "end_heading": None if result.trajectory.heading is None else float(result.trajectory.heading[-1]),
+        "heading_missed": result.turn_left,
         "outcome": result.trajectory.outcome.value,
         "distance": result.distance,
         "reached": result.reached,
@@ -49,7 +52,8 @@ def lines(result: Aimed) -> list[tuple[str, str]]:
     distance = _verdict(result.distance, task.settings.tolerance)
     if result.distance <= task.settings.tolerance and not result.reached:
         distance += ", but the part has not come to a final rest"
-    rows = [("target", point(task.target)), ("distance", f"{distance}; {_paths(result)}"), _outcome(result)]
+    heading = [] if result.turn_left is None else [("heading", _heading(result))]
+    rows = [("target", point(task.target)), ("distance", f"{distance}; {_paths(result)}"), *heading, _outcome(result)]
     for number, leg in enumerate(result.legs):
         if len(result.legs) > 1:
             rows.append((f"leg {number}", f"from {leg.start * MILLI:g} ms on"))
@@ -164,6 +168,15 @@ def _verdict(distance: float, tolerance: float, off: str = "") -> str:
     """How far from a target [m] the part ends; whether that is a miss."""
     away, of = f"{distance * MICRO:.4f} um", f"within the {tolerance * MICRO:g} um tolerance"
     return f"{away}{off}, {of}" if distance <= tolerance else f"missed by {away}, not {of}"
+
+
+def _heading(result: Aimed) -> str:
+    """The heading that is reached, that of the target, and what of it is missed."""
+    turn, left, path = result.task.turn, result.turn_left, result.trajectory.heading
+    assert turn is not None and left is not None and path is not None
+    reached, missed = math.degrees(path[-1]), math.degrees(left)
+    length = f"{abs(left) * turn.gyration * MICRO:.4f} um of the distance"
+    return f"{reached:.4f} deg, off {math.degrees(turn.heading):g} deg by {missed:.4f} deg, {length}"
 
 
 def point(place: tuple[float, float]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from active_surface.steering.legs import Leg
 from active_surface.steering.paths import settled
 from active_surface.steering.robustness import Scatter
 from active_surface.steering.settings import Settings
-from active_surface.steering.task import Place, Route, Task
+from active_surface.steering.task import Place, Route, Task, offset_of
 from common import joined
 from coupling.case import Case, length_text
 from particle import Trajectory
@@ -62,10 +63,20 @@ class Aimed(_Result):
         """The target [m]."""
         return (self.task.target,)
 
+    def off(self, path: Trajectory) -> float:
+        """How far off the target a path ends [m], in place and in a heading to reach, counted as a length."""
+        return float(np.hypot.reduce(offset_of(path, self.task.target, self.task.turn)))
+
     @property
     def distance(self) -> float:
-        """From the path's end to the target [m]."""
-        return float(np.hypot(*(self.trajectory.position[-1] - self.task.target)))
+        """From the path's end to the target [m]; with a heading to reach, what is missed of it counts as a length."""
+        return self.off(self.trajectory)
+
+    @property
+    def turn_left(self) -> float | None:
+        """From the target's heading to the part's at the end [rad]; None: any heading will do."""
+        turn, heading = self.task.turn, self.trajectory.heading
+        return None if turn is None or heading is None else turn.left(float(heading[-1]))
 
     @property
     def reached(self) -> bool:
@@ -76,10 +87,12 @@ class Aimed(_Result):
     def head(self) -> str:
         """The head of the case file: how near the drives bring the part to the target, or that they miss it."""
         x, y = map(length_text, self.task.target)
-        away = length_text(self.distance)
+        away, target = length_text(self.distance), f"({x}, {y})"
+        if (heading := self.task.heading) is not None:
+            target += f" with the heading {math.degrees(heading):g} deg"
         if self.reached:
-            return f"The drives bring the part to within {away} of ({x}, {y})."
-        return f"The target ({x}, {y}) is missed: the part ends {away} from it."
+            return f"The drives bring the part to within {away} of {target}."
+        return f"The target {target} is missed: the part ends {away} from it."
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -110,6 +123,10 @@ class Planned(_Result):
     def targets(self) -> tuple[Place, ...]:
         """The way-points [m] for which there are drives: the last of them is where these are to end."""
         return self.route.through[: self.tried]
+
+    def off(self, path: Trajectory) -> float:
+        """How far from the last of them a path ends [m]."""
+        return float(np.hypot(*(path.position[-1] - self.targets[-1])))
 
     @property
     def distances(self) -> list[float]:

@@ -39,7 +39,7 @@ class Best(NamedTuple):
 
     cost: float = np.inf  # m
     values: FloatArray = np.zeros(0)  # of the knobs
-    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
+    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end; with a heading (3,)
 
 
 class Trials:
@@ -174,7 +174,7 @@ def _newton(knobs: Knobs, trials: Trials) -> None:
         offsets, _ = trials.of(moved)
         if trials.exhausted:
             return
-        slopes = ((offsets - start.offset) / side[:, None]).T  # (2, smooth) m, over the ranges of the knobs
+        slopes = ((offsets - start.offset) / side[:, None]).T  # (2 or 3, smooth) m, over the ranges of the knobs
         room = (np.array([low, high]) - start.values)[:, smooth] / width[smooth]
         step = _smallest_step(slopes, start.offset, room) * width[smooth]
         steps = np.repeat(start.values[None], len(SHARES), axis=0)
@@ -185,7 +185,7 @@ def _newton(knobs: Knobs, trials: Trials) -> None:
 
 
 def _smallest_step(slopes: FloatArray, offset: FloatArray, room: FloatArray) -> FloatArray:
-    """The smallest step (n,) within `room` (2, n) that brings an offset (2,) nearest to 0 with slopes (2, n)."""
+    """The smallest step (n,) within `room` (2, n) that brings an offset (k,) nearest to 0 with slopes (k, n)."""
     damping = DAMPING * max(float(np.linalg.norm(slopes, 2)), np.finfo(float).tiny)
     matrix = np.concatenate([slopes, damping * np.eye(len(slopes.T))])
     low, high = np.minimum(room[0], -ROUNDING), np.maximum(room[1], ROUNDING)  # scipy wants an interior

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case import Expected, Frequency, Length, Point, Table, Time, quoted
+from coupling.case import Angle, Expected, Frequency, Length, Point, Table, Time, quoted
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class Settings(Table):
 
 
 class AimTable(Settings):
-    """The file of the `case`, beside this one; where the part is to go, if that is stated here; `Settings`."""
+    """The file of the `case`, beside this one; where the part is to go and how turned, if stated here; `Settings`."""
 
     case: Annotated[StrictStr, Expected('the name of a case file such as "array_3x3.toml"')] = Field(
         examples=["array_3x3.toml"]
@@ -122,6 +122,8 @@ class AimTable(Settings):
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
     """Where the part is to go, unless the command states it."""
+    heading: Angle | None = Field(default=None, examples=["30 deg"])
+    """The heading that a part with a footprint is to have there; without it any will do."""
 
 
 class AimTables(Table):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import shortest
@@ -23,6 +25,7 @@ from coupling.case import (
     length_text,
     must_be_inside,
 )
+from particle import Trajectory
 
 Place = tuple[float, float]
 """(x, y) in m."""
@@ -30,9 +33,34 @@ Mistake = tuple[str, str]
 """A key of [aim], and what is wrong with it."""
 
 
+class Turn(NamedTuple):
+    """The heading that a part is to have at its target."""
+
+    heading: float  # rad
+    gyration: float  # m, of the part's face: an angle times this is a length
+
+    def left(self, heading: float) -> float:
+        """The angle [rad] from this heading to another [rad], within half a turn either way."""
+        return math.remainder(heading - self.heading, 2 * math.pi)
+
+
+def offset(target: Place, turn: Turn | None, position: ArrayLike, heading: float = 0.0) -> FloatArray:
+    """How far a position [m] is off a target [m], (2,) m; with a turn (3,), how far a heading [rad] is off as well."""
+    away = np.subtract(position, target)
+    return away if turn is None else np.append(away, turn.gyration * turn.left(heading))
+
+
+def offset_of(path: Trajectory, target: Place, turn: Turn | None) -> FloatArray:
+    """The same of the end of a path."""
+    return offset(target, turn, path.position[-1], 0.0 if path.heading is None else float(path.heading[-1]))
+
+
 @dataclass(frozen=True)
 class Task:
-    """A case whose part is to be brought to a target (x, y) in m within its duration.
+    """A case whose part is to be brought to a target (x, y) in m, and to a heading in rad, within its duration.
+
+    A miss counts position and heading: the angle that is left, times the radius of gyration of the part's face about
+    its centroid, is a length beside those along x and y.
 
     Raises
     ------
@@ -44,10 +72,12 @@ class Task:
     target: Place  # m
     settings: Settings = field(default_factory=Settings)
     name: str = ""  # of the files that are written; "": that of the case
+    heading: float | None = None  # rad, of a part with a footprint; None: any
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or self.case.name)
-        wrong = [f"{key} {message}" for key, message in mistakes(self.case, self.settings, self.target)]
+        found = mistakes(self.case, self.settings, self.target, self.heading)
+        wrong = [f"{key} {message}" for key, message in found]
         if wrong:
             raise ValueError("\n".join(wrong))
 
@@ -56,13 +86,26 @@ class Task:
         """The numbers of the actuators that take part, ascending."""
         return movers(self.case, self.settings, self.target)
 
-    def within(self, duration: float, start: Place | None = None) -> Task:
-        """The same within another duration [s], and from a place [m] where the part rests.
+    @property
+    def turn(self) -> Turn | None:
+        """The heading to reach; None: any will do."""
+        return _turn(self.case, self.heading)
+
+    @property
+    def away(self) -> float:
+        """How far off the part starts [m]."""
+        part = self.case.part
+        return float(np.hypot.reduce(offset(self.target, self.turn, part.position, part.heading)))
+
+    def within(self, duration: float, path: Trajectory | None = None) -> Task:
+        """The same within another duration [s], and from where the part rests at the end of a path.
 
         Raises ValueError where the target cannot be reached from there.
         """
         run = self.case.run.model_copy(update={"duration": duration})
-        return replace(self, case=_from(self.case, start).model_copy(update={"run": run}))
+        place = None if path is None else end_of(path)
+        heading = None if path is None or path.heading is None else float(path.heading[-1])
+        return replace(self, case=_from(self.case, place, heading).model_copy(update={"run": run}))
 
 
 @dataclass(frozen=True)
@@ -110,9 +153,20 @@ class Route:
         return Task(case, self.through[way_point], self.settings, f"{self.name}_leg_{leg}")
 
 
-def _from(case: Case, start: Place | None) -> Case:
-    """The case whose part rests at a place [m] in the beginning; None: it begins as it does."""
-    rest = {} if start is None else {"position": start, "velocity": (0.0, 0.0)}
+def end_of(path: Trajectory) -> Place:
+    """Where a path ends [m]."""
+    x, y = path.position[-1].tolist()
+    return x, y
+
+
+def _turn(case: Case, heading: float | None) -> Turn | None:
+    return None if heading is None else Turn(heading, case.part.gyration)
+
+
+def _from(case: Case, start: Place | None, heading: float | None = None) -> Case:
+    """The case whose part rests at a place [m] and a heading [rad] in the beginning; None: it begins as it does."""
+    rest: dict[str, object] = {} if start is None else {"position": start, "velocity": (0.0, 0.0)}
+    rest |= {} if heading is None else {"heading": heading, "spin": 0.0}
     return case.model_copy(update={"part": case.part.model_copy(update=rest), "source": None})
 
 
@@ -133,8 +187,8 @@ def able(case: Case, settings: Settings) -> list[int]:
     return [k for k, actuator in enumerate(case.actuators) if not _unfit(actuator, settings)]
 
 
-def mistakes(case: Case, settings: Settings, target: Place | None) -> Iterator[Mistake]:
-    """Yield what is wrong with settings and a target [m] for a case, None where that is not known."""
+def mistakes(case: Case, settings: Settings, target: Place | None, heading: float | None = None) -> Iterator[Mistake]:
+    """Yield what is wrong with settings, a target [m] and a heading [rad] for a case; None where one is not known."""
     if not isinstance(case.plate, PlateCase):
         yield "case", "must have a plate on actuators; got a platform"
         return
@@ -148,6 +202,12 @@ def mistakes(case: Case, settings: Settings, target: Place | None) -> Iterator[M
         yield from (("disturbances", message) for message in str(error).split("\n"))
     unfit = list(_actuator_mistakes(case, settings))
     yield from unfit
+    if heading is not None and case.part.face is None:
+        yield "heading", "must not be given for a part without a footprint, a point that does not turn"
+        return
+    if heading is not None and not math.isfinite(heading):
+        yield "heading", f"must be a finite angle in rad; got {heading}"
+        return
     if target is None:
         return
     placed = list(misplaced(case, target))
@@ -163,12 +223,13 @@ def mistakes(case: Case, settings: Settings, target: Place | None) -> Iterator[M
             "must leave time for a cycle of each actuator that takes part; the soonest that all can end is "
             f"{soonest * 1e3:g} ms, and the run ends at {duration * 1e3:g} ms",
         )
-    away = math.dist(target, case.part.position)
+    away = float(np.hypot.reduce(offset(target, _turn(case, heading), case.part.position, case.part.heading)))
     if away <= settings.tolerance and not any(case.part.velocity):
+        as_length = "" if heading is None else ", its heading included"
         yield (
             "target",
             f"must be farther from the part than the tolerance, {length_text(settings.tolerance)}; "
-            f"got a point {length_text(away)} from where it starts: it is there already",
+            f"got a point {length_text(away)} from where it starts{as_length}: it is there already",
         )
     elif not placed:
         wrong = off_the_line(case, case.plate, target, settings.tolerance, chosen)

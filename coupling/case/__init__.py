@@ -55,6 +55,7 @@ from coupling.case.toml_file import CaseError, Problem, parse, unfit_name
 from coupling.case.values import (
     AXES,
     UNITS_REQUIRED,
+    Angle,
     Expected,
     Frequency,
     Length,

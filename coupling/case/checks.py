@@ -21,7 +21,7 @@ from coupling.case.actuators import (
     must_be_inside,
 )
 from coupling.case.friction import KogutEtsionCase, TableCase
-from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, PlateCase, PlatformCase, ShapeCase
+from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, MotionCase, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
 from coupling.case.tables import CaseTables, RunCase
 from coupling.case.values import length_text, unreadable
@@ -86,6 +86,9 @@ def _face(tables: CaseTables) -> Iterator[Mistake]:
     if tables.part.local_contact and run.scheme == "paper":
         yield ("run", "scheme"), 'must be "events" or "fixed" with local_contact = true in [part]; got "paper"'
     if face is None:
+        motion = getattr(tables.plate, "motion", None)
+        if isinstance(motion, MotionCase) and motion.turn is not None:
+            yield ("plate", "motion", "turn"), "must not be given without a footprint in [part]: a point has no heading"
         if run.after_tipping == "ignore":
             yield ("run", "after_tipping"), 'must be "stop" without a footprint in [part]: a point does not tip'
         return

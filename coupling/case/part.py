@@ -134,3 +134,8 @@ class PartCase(Table):
     def face(self) -> Footprint | None:
         """Its footprint, from the centroid; None: it is a point."""
         return _footprint(vars(self))
+
+    @property
+    def gyration(self) -> float:
+        """The radius of gyration of its face about the centroid [m], by which angles count as lengths; of a point 0."""
+        return 0.0 if self.face is None else math.sqrt(float(self.face.second_moments.trace()))

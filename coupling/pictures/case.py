@@ -11,7 +11,7 @@ from coupling.case import AXES, Case, PlateCase, PlatformCase
 from coupling.progress import silent
 from coupling.scene import platform_scene
 from fem_plate import draw_supports, frame_around, mark_actuators
-from particle import PLACE, RING
+from particle import PATH_COLOUR, PLACE, RING
 
 ARROW = 0.15  # of the frame's side: the length of the arrow of the initial velocity
 SAMPLES = 1000
@@ -45,11 +45,16 @@ def _draw_plate(case: Case, plate: PlateCase, axes: Axes) -> None:
 
 
 def _draw_motion(platform: PlatformCase, duration: float, axes: Axes) -> None:
-    """Draw the displacement of a platform along each axis over time."""
+    """Draw the displacement of a platform along each axis over time, and its turn on a scale at the right."""
     scene = platform_scene(platform, silent)
     times = np.linspace(0, duration, SAMPLES)
-    for name, drive, style in zip(AXES, (*scene.base, *scene.lifts), STYLES, strict=True):
+    for name, drive, style in zip(AXES, (*scene.base[:2], *scene.lifts), STYLES, strict=True):
         axes.plot(times, drive.evaluate(times)[0], style, color="black", label=f"along {name}")
+    for turn in scene.base[2:]:
+        right = axes.twinx()
+        right.plot(times, turn.evaluate(times)[0], color=PATH_COLOUR)
+        label_axis(right.yaxis, "turn of the platform", "rad")
+        right.yaxis.label.set_color(PATH_COLOUR)
     axes.set_xlim(0, duration)
     label_axis(axes.xaxis, "time", "s")
     label_axis(axes.yaxis, "place of the platform", "m")

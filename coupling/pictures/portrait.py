@@ -50,7 +50,7 @@ class Portrait:
     plate: PlateView | None  # at the moment; None: there is a platform
     moment: float  # s
     lifts: Sequence[AnyDrive]  # of the actuators or the platform
-    base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
+    base: Sequence[AnyDrive]  # of a platform, along x and y, and its turn; none: the surface stays in its plane
     complete: bool = True  # whether the files hold the run to its end
 
     @cached_property

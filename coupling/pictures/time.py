@@ -101,8 +101,10 @@ def margins_over_time(portrait: Portrait) -> Curves | None:
 
 
 def velocities_of(portrait: Portrait) -> list[Curves]:
-    """Where the surface moves in its plane, the velocities of part and platform along its axes."""
+    """Where the surface moves in its plane, without a turn, the velocities of part and platform along its axes."""
     samples, curves = portrait.samples, []
+    if len(portrait.base) > 2:  # which velocities relative to the platform turn with
+        return []
     for name, drive, relative in zip("xy", portrait.base, samples.velocity.T, strict=False):
         velocity = drive.evaluate(samples.time * (1 - 1e-12))[1]
         if velocity.any():

@@ -87,5 +87,7 @@ def _moved(platform: PlatformCase) -> str:
     """What moves a platform."""
     if isinstance(platform.motion, MotionCase):
         axes = [name for name in ("x", "y", "z") if getattr(platform.motion, name) is not None]
-        return f"shaken along {joined(axes)}" if axes else "which stands still"
+        ways = [f"shaken along {joined(axes)}"] if axes else []
+        ways += ["turned"] if platform.motion.turn is not None else []
+        return joined(ways or ["which stands still"])
     return "which stands still" if platform.motion is None else "moved as was measured"

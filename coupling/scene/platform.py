@@ -26,7 +26,7 @@ class PlatformScene:
     """A platform."""
 
     lifts: Sequence[AnyDrive]  # one, along z
-    base: Sequence[AnyDrive]  # along x and y
+    base: Sequence[AnyDrive]  # along x and y; of a turning platform a third one, its turn [rad]
     surface: SurfaceMotion
     fits: tuple[MotionFit, ...] = ()  # how closely the drives follow a measured motion, by axis
     shapes: None = field(default=None, init=False)
@@ -41,17 +41,17 @@ def platform_scene(platform: PlatformCase, progress: Progress) -> PlatformScene:
     with progress("Fitting the motion"):
         drives, fits = _drives(platform)
     with progress("Joining the surface"):
-        x, y, z = (drives.get(axis) for axis in AXES)
-        size = max(map(travel, drives.values()), default=0.0) or STILL_SIZE
-        surface = platform_surface(x, y, z, size)
-    return PlatformScene([z or STILL], [x or STILL, y or STILL], surface, fits)
+        x, y, z, turn = (drives.get(name) for name in (*AXES, "turn"))
+        size = max((travel(drive) for drive in (x, y, z) if drive), default=0.0) or STILL_SIZE
+        surface = platform_surface(x, y, z, size, turn)
+    base = [x or STILL, y or STILL, *([turn] if turn else [])]
+    return PlatformScene([z or STILL], base, surface, fits)
 
 
 def _drives(platform: PlatformCase) -> tuple[dict[str, AnyDrive], tuple[MotionFit, ...]]:
-    """The drive of each moving axis, and how closely it follows a measured motion."""
+    """The drive of each moving axis, and of a turn, and how closely it follows a measured motion."""
     if isinstance(platform.motion, MotionCase):
-        drives = {axis: getattr(platform.motion, axis) for axis in AXES}
-        return {axis: build_drive(drive) for axis, drive in drives.items() if drive is not None}, ()
+        return {name: build_drive(drive) for name, drive in platform.motion if drive is not None}, ()
     measured, mistakes = platform.read_motion
     if mistakes:
         raise ValueError(f"{Path(str(platform.motion))}: " + "; ".join(mistakes))

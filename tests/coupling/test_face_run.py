@@ -9,9 +9,10 @@ import pytest
 
 from active_surface.views import write_run_page
 from coupling import Case, InputError, read_run, run_case
+from coupling.case import read_case, write_case
 from coupling.part import build_friction, build_part
 from coupling.report import lines
-from particle import Body, EventKind, Footprint, Micropart
+from particle import Body, CoulombAdhesion, Drive, EventKind, Footprint, Micropart, platform_surface, simulate
 
 TABLES = {
     "plate": {"shape": "platform", "motion": {"x": {"stroke": "0.4 um", "frequency": "500 Hz", "cycle": "cosine"}}},
@@ -191,3 +192,54 @@ def test_a_run_turns_and_says_so(tmp_path):
     drawn = [line.get_xydata() for line in result.plot().axes[0].lines]
     first = face.outline(path.position[0], path.heading[0])
     assert any(len(data) == 5 and np.ptp(data, axis=0) == pytest.approx(np.ptp(first, axis=0) * 1e6) for data in drawn)
+
+
+TURN = {"stroke": "0.1 rad", "frequency": "70 Hz", "cycle": "sine", "phase": "0.5 rad"}
+
+
+@pytest.mark.compiled
+def test_a_platform_turns_a_part_as_it_does_in_python(tmp_path):
+    sway = {"stroke": "20 um", "frequency": "100 Hz", "cycle": "sine"}
+    case = case_of(plate={"motion": {"x": sway, "turn": TURN}}, part={"heading": "0 deg", "spin": "0 rad/s"})
+    assert read_case(write_case(case, tmp_path / "turned.toml")).plate == case.plate
+    path = run_case(case).trajectory
+    drives = Drive(20e-6, 100.0, cycle="sine"), Drive(0.1, 70.0, cycle="sine", phase=0.5)
+    table = platform_surface(x=drives[0], turn=drives[1], size=40e-6)
+    body = Body(Footprint.rectangle(100e-6, 60e-6), 20e-6, case.part.mass, position=(10e-6, 0.0))
+    same = simulate(table, body, CoulombAdhesion(0.3), 6e-3)
+    for name in ("position", "heading", "spin"):
+        assert getattr(path, name).tobytes() == getattr(same, name).tobytes()
+    assert path.energy.balance < 1e-12 and case.plot().axes[-1].get_ylabel() == "turn of the platform [mrad]"
+
+
+@pytest.mark.compiled
+def test_the_work_of_a_turn_that_carries_a_part_is_its_kinetic_energy():
+    case = case_of(plate={"motion": {"turn": TURN}}, part={"heading": "0 deg", "spin": "0 rad/s"})
+    path = run_case(case).trajectory
+    rate = 0.1 * 2 * math.pi * 70 * np.cos(2 * math.pi * 70 * path.time + 0.5)
+    inertia = case.part.mass * (1e-5**2 + (100e-6**2 + 60e-6**2) / 12)  # about the platform's origin
+    assert path.outcome.value == "stuck" and np.ptp(path.heading) == 0
+    assert path.energy.kinetic == pytest.approx(inertia * rate**2 / 2, rel=1e-9)
+    assert path.energy.work == pytest.approx(
+        inertia * (rate**2 - rate[0] ** 2) / 2, abs=1e-9 * inertia * rate.max() ** 2
+    )
+
+
+def test_a_turn_is_an_angle_under_a_footprint():
+    motion = {"shape": "platform", "motion": {"turn": TURN}}
+    point = {"mass": "1 ug", "position": ["0 um", "0 um"]}
+    said = "plate.motion.turn must not be given without a footprint in [part]: a point has no heading"
+    assert refusal({"plate": motion, "part": point}) == said
+    for keys, said in (
+        (TURN | {"stroke": "5 um"}, 'plate.motion.turn.stroke must be an angle such as "90 deg"'),
+        (
+            {"frequency": "70 Hz"},
+            'plate.motion.turn.stroke is missing; it must be an angle such as "90 deg", or use a table',
+        ),
+        ({"table": [["0 ms", "0 um"], ["1 ms", "1 um"]]}, "plate.motion.turn.table"),
+        ({"table": ["0 ms"]}, "plate.motion.turn.table must be two or more points, each a time and an angle"),
+    ):
+        assert said in refusal({"plate": {"shape": "platform", "motion": {"turn": keys}}})
+    steps = [{"stroke": "5 deg", "frequency": "70 Hz", "cycle": "up"}, {"cycle": "hold", "dwell": "1 ms"}]
+    turned = case_of(plate={"motion": {"turn": {"segments": steps}}}).plate.motion.turn
+    assert turned.segments[0].stroke == pytest.approx(math.radians(5))

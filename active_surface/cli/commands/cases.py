@@ -54,9 +54,9 @@ def check(file: Path) -> Answer:
     elif kind == "aim":
         from active_surface.steering import read_settings
 
-        case, _, target = read_settings(file, True)
+        case, _, target, heading = read_settings(file, True)
         actuators = len(case.actuators)
-        figures = {"actuators": actuators, "target": target}
+        figures = {"actuators": actuators, "target": target, "heading": heading}
         text = f"an aim of {case.name}, {count(actuators, 'actuator')}"
     else:
         case = read(file)

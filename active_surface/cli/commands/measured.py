@@ -173,11 +173,14 @@ def identify(
     case: tuple[Path, ...],
     track: Annotated[
         tuple[Path, ...],
-        option("CSV file of time, x and y, with units: one for each CASE, or several of one.", "FILE ..."),
+        option("CSV file of time, x, y and heading, with units: one for each CASE, or several of one.", "FILE ..."),
     ],
     free: Annotated[tuple[str, ...], option("Fields to find: part.squeeze ...", "FIELD ...")] = (),
     own: Annotated[tuple[str, ...], option("Fields that each track has for itself.", "FIELD ...")] = (),
     bounds: Annotated[tuple[str, ...], option("Of a field [a tenth and ten times the case's].", "FIELD=LOW,HIGH")] = (),
+    noise: Annotated[
+        str | None, option("Deviations of place and heading [by the radius of gyration].", "LENGTH,ANGLE")
+    ] = None,
     absolute: Annotated[bool, option("Make distances small, not their squares: for tracks with outliers.")] = False,
     seed: Annotated[int, option("Of the search's starts.", type=NOT_NEGATIVE, show_default=True)] = 0,
     overwrite: Overwrite = False,
@@ -194,11 +197,18 @@ def identify(
     from active_surface.identification import identify as find
 
     free_files(output, case_names(cases, len(track), bool(own)), overwrite)
-    tracks, ends = [read_track(file) for file in track], _bounds(bounds)
+    deviations = None if noise is None else _noise(noise)
+    tracks, ends = [read_track(file, deviations) for file in track], _bounds(bounds)
     with stages(IDENTIFYING) as bar:
         found = find(cases, tracks, free, ends, own, "absolute" if absolute else "squares", seed, threads, bar)
     found = found.written(output, True)
     return Answer(found.figures(), found.lines(), found.warnings(), found.files)
+
+
+def _noise(text: str) -> tuple[float, float]:
+    """The deviations [m, rad] in a text such as 0.5 um,0.2 deg."""
+    length, _, angle = text.partition(",")
+    return amount_of(length, "m", "--noise", "0.5 um") or 0.0, amount_of(angle, "rad", "--noise", "0.2 deg") or 0.0
 
 
 def _bounds(texts: Sequence[str]) -> dict[str, list[str]]:

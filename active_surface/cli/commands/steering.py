@@ -29,6 +29,9 @@ def aim(
     target: Annotated[
         str | None, option('Where the part is to go: um, or with units as "0.1 mm,50 um".', "X,Y")
     ] = None,
+    heading: Annotated[
+        str | None, option('The heading of its footprint there: deg, or with its unit as "0.5 rad".', "ANGLE")
+    ] = None,
     robust: Annotated[
         float | None, option("Make this quantile of the distances small, such as 0.9.", "Q", type=QUANTILE)
     ] = None,
@@ -42,13 +45,14 @@ def aim(
     with the best drives so far. The exit code is 1 where the target is missed.
     """
     from active_surface.steering import aim as find
-    from active_surface.steering import read_place, read_task
+    from active_surface.steering import read_heading, read_place, read_task
 
     place = None if target is None else read_place(target, "--target")
+    angle = None if heading is None else read_heading(heading, "--heading")
     if robust is not None and cvar is not None:
         raise ValueError("--cvar must not be given with --robust, whose place it takes")
     check_kind(case, "aim", "case")
-    task = read_task(case, place, robust, cvar)
+    task = read_task(case, place, robust, cvar, angle)
     with counted("paths") as tell:
         result = find(task, output, threads, tell, overwrite)
     return _aimed(result)

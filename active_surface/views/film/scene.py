@@ -167,10 +167,15 @@ class Scene:
         return np.asarray((shapes_of(self.whole)[spots.corners] * spots.weights[..., None]).sum(axis=1))
 
     def shifts(self, times: FloatArray) -> FloatArray:
-        """How far the platform has come (k, 2) [m] at times (k,) [s]; 0: there is a plate."""
+        """How far the platform has come (k, 2) [m] at times (k,) [s]; 0: there is a plate, or it turns.
+
+        A turning platform is drawn in its own axes.
+        """
         plate = self.run.case.plate
         base = platform_scene(plate, silent).base if isinstance(plate, PlatformCase) else ()
-        return np.stack([drive.evaluate(times)[0] for drive in base], axis=1) if base else np.zeros((len(times), 2))
+        if len(base) != 2:
+            return np.zeros((len(times), 2))
+        return np.stack([drive.evaluate(times)[0] for drive in base], axis=1)
 
     def moments(self, times: FloatArray) -> list[Moment]:
         """What there is at times (F,) [s]; between stored steps heights are linear, the part is where its rows are."""

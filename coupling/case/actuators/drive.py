@@ -36,6 +36,7 @@ _SLACK: Final = 1 + 1e-9  # for limits that are met exactly
 _RAMP: Final = f"0, or a number of cycles from {SHORTEST_RAMP} to {LONGEST_RAMP}"
 _REPEATS: Final = f'a whole number from 1 to {MAX_PASSES}, or "{ENDLESS}"'
 _POINTS: Final = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
+_ANGLES: Final = 'two or more points, each a time and an angle, such as [["0 ms", "0 deg"], ["1 ms", "5 deg"]]'
 
 
 def _repeats(value: object) -> object:
@@ -52,8 +53,6 @@ def _ramp(value: float) -> float:
 
 def _points(value: Any, handler: Any) -> object:
     """Points in time, whose times increase from 0."""
-    if not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in value):
-        raise ValueError(f"must be {_POINTS}; got {quoted(value)}")
     points = handler(value)
     times = [time for time, _ in points]
     if times[0] != 0:
@@ -65,9 +64,21 @@ def _points(value: Any, handler: Any) -> object:
     return points
 
 
+class Pairs(Listed):
+    """Marks a tuple of pairs."""
+
+    def validate(self, value: object) -> object:
+        """Return a list or tuple of so many pairs; ValueError for all else."""
+        pairs: Any = super().validate(value)
+        if not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in pairs):
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
+        return pairs  # type: ignore[no-any-return]
+
+
 Cycle = Literal["up-down", "up", "sine", "cosine"]
 Ramp = Annotated[StrictFloat, AfterValidator(_ramp), Expected(_RAMP)]
-Points = Annotated[tuple[tuple[Time, Length], ...], WrapValidator(_points), Listed(_POINTS, 2)]
+Points = Annotated[tuple[tuple[Time, Length], ...], WrapValidator(_points), Pairs(_POINTS, 2)]
+Angles = Annotated[tuple[tuple[Time, Angle], ...], WrapValidator(_points), Pairs(_ANGLES, 2)]
 _PASSES: Final = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PASSES}, {"const": ENDLESS}]}
 Repeats = Annotated[int | Literal["endless"], PlainValidator(_repeats), Expected(_REPEATS), WithJsonSchema(_PASSES)]
 
@@ -108,6 +119,7 @@ class DriveCase(Table):
 
     in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
     owner: ClassVar[str] = "an actuator"
+    height: ClassVar[str] = 'a length such as "150 um"'
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises; 0: it keeps the plate at 0; negative: down."""
@@ -141,7 +153,7 @@ class DriveCase(Table):
             yield key, f"must not be given with {_NAMED[drivers[0]]}; {only}"
         if not drivers:
             other = 'a force such as "1 mN", ' * ("force" in cls.model_fields) + "a table or segments instead"
-            yield "stroke", f'is missing; it must be a length such as "150 um", or use {other}'
+            yield "stroke", f"is missing; it must be {cls.height}, or use {other}"
         if drivers and drivers[0] in ("table", "segments"):
             yield from cls._beside_times(drivers[0], given)
         else:

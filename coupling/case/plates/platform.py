@@ -9,10 +9,11 @@ from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
 from pydantic import Discriminator, Field, Tag
 
-from coupling.case.actuators import MIN_SPACING, DriveCase
+from coupling.case.actuators import MIN_SPACING, Angles, DriveCase, SegmentCase
 from coupling.case.table import Contradictions, Mistake, Table
 from coupling.case.values import (
     AXES,
+    Angle,
     Columns,
     FileBeside,
     MeasuredColumns,
@@ -50,6 +51,27 @@ class AxisCase(DriveCase):
     owner: ClassVar[str] = "an axis"
 
 
+class TurnSegmentCase(SegmentCase):
+    """A part of a schedule of turns, in rad, Hz and s."""
+
+    stroke: Angle | None = Field(default=None, examples=["5 deg"])
+    """How far it rises from where it is; negative: down. Not with "hold"."""
+
+
+class TurnCase(DriveCase):
+    """What turns a platform about its origin: a drive whose heights are angles, in rad."""
+
+    owner: ClassVar[str] = "a turn"
+    height: ClassVar[str] = 'an angle such as "90 deg"'
+
+    stroke: Angle | None = Field(default=None, examples=["5 deg"])
+    """How far it turns, counter-clockwise; negative: clockwise."""
+    table: Angles | None = Field(default=None, examples=[[["0 ms", "0 deg"], ["1 ms", "5 deg"], ["3 ms", "2 deg"]]])
+    """Instead of a stroke: heights at given times, with a smooth stroke from each to the next."""
+    segments: tuple[TurnSegmentCase, ...] | None = None
+    """Instead of a stroke: a schedule, one table after the other."""
+
+
 class MotionCase(Table):
     """What moves a platform; along an axis that is not given it does not move."""
 
@@ -59,6 +81,8 @@ class MotionCase(Table):
     """The drive along y."""
     z: AxisCase | None = None
     """The drive along z."""
+    turn: TurnCase | None = None
+    """The drive that turns it about the origin, under a part with a footprint."""
 
 
 class PlatformCase(Table):
