@@ -57,3 +57,4 @@ from .solved_plates import SolvedPlates as SolvedPlates, ground_key as ground_ke
 from .suggestion import near as near
 from .margins import Margin as Margin
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of
+from .summary import least_pressure as least_pressure

@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from coupling.borders import Thresholds, thresholds_of
@@ -21,6 +22,8 @@ from coupling.plate_figures import PlateFigures, plate_figures
 from coupling.scene import PlateScene, Scene
 from particle import EventKind, State, Trajectory
 from particle.friction import Contact
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -143,12 +146,15 @@ def _face(trajectory: Trajectory, friction: Contact) -> dict[str, float | None]:
     heading, margin, load = trajectory.heading, trajectory.pressure_margin, trajectory.normal_force
     if heading is None or margin is None:
         return dict.fromkeys(("end_heading", "turned", "least_pressure"))
-    least = None
-    if math.isfinite(friction.pull_off):
-        presses = load + friction.pull_off > 0
-        ratios = (margin * load + friction.pull_off)[presses] / (load + friction.pull_off)[presses]
-        least = float(np.nanmin(ratios)) if np.isfinite(ratios).any() else None
+    ratios = least_pressure(margin, load, friction.pull_off)
+    least = float(np.nanmin(ratios)) if np.isfinite(ratios).any() else None
     return {"end_heading": float(heading[-1]), "turned": float(heading[-1] - heading[0]), "least_pressure": least}
+
+
+def least_pressure(margin: FloatArray, load: FloatArray, pull_off: float) -> FloatArray:
+    """The least pressure on a face over the mean, both with adhesion; nan where nothing presses or all is borne."""
+    presses = load + pull_off > 0 if math.isfinite(pull_off) else np.zeros(len(load), dtype=bool)
+    return np.divide(margin * load + pull_off, load + pull_off, out=np.full(len(load), np.nan), where=presses)
 
 
 def _frames_per_cycle(case: Case, scene: Scene, end: float) -> float | None:

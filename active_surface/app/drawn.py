@@ -38,7 +38,15 @@ def map_of(case: Case) -> dict[str, Any]:
         "endless": not isinstance(case.plate, PlateCase),  # so that the path gives the frame
         "dragged": len(places) <= MAX_DRAGGED,
         "start": (np.array(case.part.position) * unit.per_si).tolist(),
+        "face": face_of(case),
+        "heading": case.part.heading,
     }
+
+
+def face_of(case: Case) -> list[list[float]] | None:
+    """The corners of the part's face before it is turned; None: it is a point."""
+    face = case.part.face
+    return None if face is None else (face.outline((0.0, 0.0), 0.0) * unit_of(case).per_si).tolist()
 
 
 def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
@@ -52,6 +60,7 @@ def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
         "distance": quantity_text(path.distance, "m", 4),
         "duration": quantity_text(float(path.time[-1]), "s", 3),
         "end": (path.position[-1] * unit.per_si).tolist(),
+        "heading": None if path.heading is None else float(path.heading[-1]),
     }
 
 

@@ -16,7 +16,10 @@ Scale = Literal["linear", "log", "choice"]
 ALL: Final = "*"
 """In place of a number: all actuators at once."""
 DRIVEN: Final = ("stroke", "force", "frequency", "phase", "delay", "cycles", "dwell", "stiffness")
-OF_PART: Final = ("position.0", "position.1", "mass", "size", "centre_height", "squeeze", "velocity.0", "velocity.1")
+OF_PART: Final = (
+    "position.0", "position.1", "heading", "sides.0", "sides.1", "radius", "thickness", "mass", "size", "centre_height",
+    "squeeze", "velocity.0", "velocity.1",
+)  # fmt: skip
 OF_FRICTION: Final = (
     "limit", "coefficient", "static_coefficient", "adhesion", "plasticity_index", "adhesion_energy", "roughness",
     "contact_area", "hardness", "static_ratio",
@@ -29,7 +32,10 @@ CHOICES: Final = {
     "plate.top_face": ("false", "true"),
     "plate.supports": ("clamped", "simply-supported", "free"),
 }
-NAMES: Final = {"position.0": "x", "position.1": "y", "velocity.0": "velocity x", "velocity.1": "velocity y"}
+NAMES: Final = {
+    "position.0": "x", "position.1": "y", "sides.0": "side x", "sides.1": "side y", "velocity.0": "velocity x",
+    "velocity.1": "velocity y",
+}  # fmt: skip
 GRAMS: Final = 1e3  # in a kg
 TIMES: Final = 8.0  # what sliders over powers of ten take a value by, up and down
 OF_NOTHING: Final = {"m": 1e-5, "N": 1e-6, "s": 1e-3, "m/s": 0.1, "Pa": 100.0, "N/m": 10.0, "kg": 1e-9, "1": 1.0}
@@ -64,8 +70,9 @@ def knobs_of(case: Case, selected: str) -> list[dict[str, Any]]:
         groups.append((title, list(_found(case, f"actuators.{selected}", [*keys, *places]))))
     else:
         groups.append(("Platform", list(_of_platform(case))))
-    groups.append(("Part", list(_found(case, "part", OF_PART))))
-    groups.append(("Friction", list(_found(case, "friction", OF_FRICTION))))
+    idle = "heading" if case.part.face is None else "contact_area"  # a point does not turn; the area of a face counts
+    for table, of in (("part", OF_PART), ("friction", OF_FRICTION)):
+        groups.append((table.capitalize(), list(_found(case, table, [key for key in of if key != idle]))))
     groups.append(("Run", list(_found(case, "run", OF_RUN))))
     if isinstance(case.plate, PlateCase):
         groups.append(("Plate", [*_chosen(case), *_found(case, "plate", OF_PLATE)]))
@@ -182,7 +189,7 @@ def _range(case: Case, key: str, unit: str, value: float | None) -> tuple[float,
         return -max(2 * size, 1e-4), max(2 * size, 1e-4), "linear"
     if key.startswith("velocity"):
         return -max(2 * size, 0.1), max(2 * size, 0.1), "linear"
-    if key == "phase":
+    if key in ("phase", "heading"):
         most = max(math.pi, size)
         return -most, most, "linear"
     if key == "poisson_ratio":

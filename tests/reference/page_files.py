@@ -17,6 +17,29 @@ CASE = "# </script><script>alert(2)</script>\n" + altered(
     ('limit = "40 nN"', 'limit = "41.8 nN"'),
     ('duration = "5 ms"', 'duration = "2 ms"\nframes = 11'),
 )
+FACED = """\
+[plate]
+shape = "platform"
+motion = { x = { stroke = "2 um", frequency = "500 Hz", cycle = "cosine" } }
+
+[part]
+footprint = "polygon"
+corners = [
+  ["0 um", "0 um"], ["90 um", "0 um"], ["90 um", "30 um"], ["30 um", "30 um"], ["30 um", "60 um"], ["0 um", "60 um"],
+]
+thickness = "5 um"
+density = "2330 kg/m^3"
+position = ["40 um", "-70 um"]
+heading = "30 deg"
+spin = "600 rad/s"
+
+[friction]
+model = "coulomb"
+coefficient = 0.3
+
+[run]
+duration = "3 ms"
+"""
 STUDY = """\
 [study]
 case = "base.toml"

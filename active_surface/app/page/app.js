@@ -88,9 +88,11 @@ const TAKES = {
   path(answer) {
     if (answer.turn) clearMistakes(); // before its case comes, which keeps what is wrong
     arrived(answer, () => {
-      nowPath = { ...pairs(unpack(answer.line)), coarse: answer.coarse, exact: false };
+      nowPath = { ...pairs(unpack(answer.line)), heading: answer.heading, coarse: answer.coarse, exact: false };
       for (const id of ["run", "trust"]) element(id).classList.add("old");
+      mapData.face = answer.face; // whose sizes may be others
       drawPath();
+      if (mapData.face) placeOver();
       tellPath(answer);
     });
   },
@@ -105,7 +107,7 @@ const TAKES = {
     } else arrived(answer, () => { showMistakes(answer.mistakes, changed); if (!dragged) settleHandles(); });
   },
   async run(answer) {
-    nowPath = { ...pairs(unpack(answer.line)), coarse: [], exact: true };
+    nowPath = { ...pairs(unpack(answer.line)), heading: answer.heading, coarse: [], exact: true };
     runData = answer;
     if (answer.saved) { RUNS.saved = answer.rows; savedPath = nowPath; }
     RUNS.now = answer.rows;
@@ -136,11 +138,11 @@ const TAKES = {
     setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
     element("picture").disabled = false;
   },
-  search({ done, of, line, away }) {
+  search({ done, of, line, heading, away }) {
     beginSearch();
     if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
     if (!line) return;
-    nowPath = { ...pairs(unpack(line)), coarse: ["search"], exact: false };
+    nowPath = { ...pairs(unpack(line)), heading, coarse: ["search"], exact: false };
     drawPath();
     element("coarse").textContent = `Best drives so far: the part ends ${away} from the target.`;
   },

@@ -23,7 +23,9 @@ function rangesOfMap() {
   if (dragged) return mapAxes().map((axis) => axis.range);
   const { box, endless } = mapData, all = [0, 1].map((k) => [box[0][k], box[1][k]]);
   if (!nowPath || !(around || endless)) return all.map((ends) => padded(ends));
-  return ["x", "y"].map((axis) => padded([...nowPath[axis], ...(savedPath?.[axis] ?? [])], (endless ? 1 : CLOSEST) * (all[0][1] - all[0][0])));
+  const ends = [[mapData.start, mapData.heading], [[nowPath.x.at(-1), nowPath.y.at(-1)], nowPath.heading]];
+  const faces = mapData.face ? ends.flatMap((end) => faceAt(mapData.face, ...end)).flat() : [];
+  return ["x", "y"].map((axis, k) => padded([...nowPath[axis], ...(savedPath?.[axis] ?? []), ...faces.map((place) => place[k])], (endless ? 1 : CLOSEST) * (all[0][1] - all[0][0])));
 }
 
 // Draw all of the map.
@@ -52,7 +54,7 @@ function drawPath() {
   element("path-line").setAttribute("points", Array.from(x, (c, k) => `${c},${-y[k]}`).join(" "));
   element("end").hidden = last < 0;
   if (!exact) element("here").hidden = true;
-  if (last >= 0) put(element("end"), [x[last], y[last]]);
+  if (last >= 0) put(element("end"), [x[last], y[last]], nowPath.heading);
 }
 
 // The surface at the moment of the clock, and the part there.
@@ -68,7 +70,7 @@ function drawHeights(step = shown) {
   element("shades-range").textContent = `height, ${said(low)} to ${said(high)} ${units.height}`;
   Plotly.restyle("map", { z: [rows], zmin: low, zmax: high > low ? high : low + 1, colorscale: [surface.colours],
     x0: left, dx: (right - left) / (NODES - 1), y0: bottom, dy: (top - bottom) / (NODES - 1) }, [HEIGHTS]);
-  put(element("here"), [part.x[step] * ratio, part.y[step] * ratio]);
+  put(element("here"), [part.x[step] * ratio, part.y[step] * ratio], part.heading?.[step]);
 }
 
 // Nodes of a grid in the frame: which are on the surface, the corners of their triangles, and the weights of these.
@@ -114,17 +116,20 @@ function placeOver() {
   for (const one of [element("end"), element("here"), ...element("handles").children]) if (one.place) put(one, one.place);
 }
 
-function put(group, [x, y]) {
-  const [across, up] = mapAxes();
-  group.place = [x, y];
+// Start, end and the part have outlines where the part has a face, turned by a heading [rad].
+function put(group, [x, y], heading = group.heading) {
+  const [across, up] = mapAxes(), lines = mapData.face ? faceAt(mapData.face, [x, y], heading) : [];
+  Object.assign(group, { place: [x, y], heading });
   Object.assign(group.style, { left: `${across.l2p(x)}px`, top: `${up.l2p(y)}px` });
+  element(`${group.dataset.key ?? group.id}-face`)?.setAttribute("d", lines.map((line) => `M${line.map(([a, b]) => `${a},${-b}`).join("L")}`).join(""));
 }
 
 // Bring what can be dragged, and is not, back to where the case has it.
-function settleHandles() { for (const group of element("handles").querySelectorAll(".start, .actuator")) put(group, group.home); }
+function settleHandles() { for (const group of element("handles").querySelectorAll(".start, .actuator")) put(group, group.home, mapData.heading); }
 
-// Have the handle at a place follow a field of that place, whose text is a number of a unit.
+// Have the handle at a place follow a field of that place, or the start's outline its heading; the text is a number of a unit.
 function placeHandle({ path, unit }, text) {
+  if (path === "part.heading") put(handleOf("start"), handleOf("start").place, Number.parseFloat(text) * Math.PI / 180);
   const [, owner, axis] = /^(part|actuators\.\d+)\.position\.([01])$/.exec(path) ?? [];
   const group = owner && handleOf(owner === "part" ? "start" : owner.replace("s.", " "));
   if (!group) return;
@@ -137,7 +142,7 @@ function handleOf(key) { return element("handles").querySelector(`[data-key="${k
 
 function handle(kind, name, at, number = null) {
   const keys = kind === "target" ? "Arrow keys move it, Enter starts the search." : "Arrow keys move it.";
-  const group = Object.assign(document.createElement("button"), { type: "button", className: `handle ${kind}`, textContent: number ?? "", place: at, home: at });
+  const group = Object.assign(document.createElement("button"), { type: "button", className: `handle ${kind}`, textContent: number ?? "", place: at, home: at, heading: mapData.heading });
   group.setAttribute("aria-label", `${name} at ${place(at)}. ${keys}`);
   group.dataset.key = number === null ? kind : `${kind} ${number}`;
   group.classList.toggle("selected", number !== null && ["*", String(number)].includes(mapData.selected));

@@ -22,6 +22,7 @@ class Moments(NamedTuple):
     position: FloatArray  # (k, 3) m
     velocity: FloatArray  # (k, 2) m/s
     state: IntArray  # (k,)
+    heading: FloatArray | None  # (k,) rad, of a part with a face
     normal_force: FloatArray  # (k,) N
     friction_force: FloatArray  # (k,) N
     at_event: BoolArray  # (k,) whether it lies between the steps
@@ -49,6 +50,7 @@ def moments_of(run: SavedRun) -> Moments:
         position=both(run.position, np.column_stack([run.rows.position, run.rows.height])),
         velocity=both(run.velocity[:, :2], run.rows.velocity),
         state=both(run.state, run.rows.state).astype(np.int64),
+        heading=None if run.heading is None or run.rows.heading is None else both(run.heading, run.rows.heading),
         normal_force=both(run.normal_force, run.rows.normal_force),
         friction_force=both(run.friction_force, run.rows.friction_force),
         at_event=order >= len(steps),

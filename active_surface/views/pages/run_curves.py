@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
 import numpy as np
@@ -10,7 +11,7 @@ from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.geometry import cut_in
 from active_surface.views.pages.packed import packed
 from common import Unit, unit_for
-from coupling import Margin, Summary, report, silent, summary_of
+from coupling import Margin, Summary, build_friction, least_pressure, report, silent, summary_of
 from coupling.case import PlatformCase
 from coupling.pictures import chosen_drives
 from coupling.results import SavedRun
@@ -53,8 +54,16 @@ def _panels(run: SavedRun, along: Unit) -> list[dict[str, Any]]:
         distance = _panel("Distance", unit, *_fewer(moments, {"from coming off": contact}))
         panels.append(distance | {"limit": 0.0} | _marked(run, summary, "contact", margins.contact))
     else:
-        panels.append(_panel("Load", "N", *_fewer(*_rows(run, "normal_force"))))
-    panels.append(_panel("Friction", "N", *_fewer(*_rows(run, "friction_force"))))
+        panels.append(_panel("Load", "N", *_fewer(*_rows(run, "normal_force", "normal"))))
+    if run.heading is not None:
+        turned = _fewer(*_rows(run, "heading", "counter-clockwise from x"))
+        panels.insert(1, _panel("Heading", Unit("degrees", math.degrees(1.0)), *turned))
+        (rows, margin), (_, load) = (_rows(run, name, "") for name in ("pressure_margin", "normal_force"))
+        least = least_pressure(margin[""], load[""], build_friction(run.case).pull_off)
+        if np.isfinite(least).any():
+            under = _fewer(rows, {"least under the part": least})
+            panels.append(_panel("Pressure", Unit("of mean", 1.0), *under) | {"limit": 0.0})
+    panels.append(_panel("Friction", "N", *_fewer(*_rows(run, "friction_force", "on the part"))))
     return panels
 
 
@@ -105,10 +114,9 @@ def _merged(run: SavedRun) -> tuple[FloatArray, IntArray]:
     return times[order], order
 
 
-def _rows(run: SavedRun, name: str) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """A force [N] at steps and rows."""
+def _rows(run: SavedRun, name: str, text: str) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """A number of the part at steps and rows."""
     times, order = _merged(run)
-    text = {"normal_force": "normal", "friction_force": "on the part"}[name]
     return times, {text: np.concatenate([getattr(run, name), getattr(run.rows, name)])[order]}
 
 

@@ -10,7 +10,7 @@ from matplotlib.colors import Normalize, to_hex
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.geometry import Spots, coarse, cut_in, exaggeration, inside, outer_edges, spots_of
 from active_surface.views.modes import modes_of
-from active_surface.views.pages.moments import MAX_EVENTS, heights_at, moments_of
+from active_surface.views.pages.moments import MAX_EVENTS, Moments, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
 from common import Unit, unit_for
@@ -34,7 +34,9 @@ COLOURS: Final = 11  # stops of the colour scale
 def run_data(run: SavedRun) -> dict[str, Any]:
     """What the programs of the page read."""
     moments = moments_of(run)
-    points, triangles = _around(run.points, run.triangles, moments.position[:, :2])
+    outlines = _outlines(run, moments)
+    way = np.concatenate([moments.position[:, :2], outlines.reshape(-1, 2)])
+    points, triangles = _around(run.points, run.triangles, way)
     heights = heights_at(run, moments, points)
     place = run.points[points]
     length = float(np.ptp(place, axis=0).max())
@@ -46,7 +48,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     box = np.stack([place.min(axis=0), place.max(axis=0)])
-    window = path_window(run.rows.position, box, run.actuators)
+    window = path_window(np.concatenate([run.rows.position, outlines.reshape(-1, 2)]), box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     marked = np.flatnonzero(points < len(run.actuators))
     in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
@@ -84,6 +86,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "speed": packed(np.hypot(*moments.velocity.T) * speed.per_si, "f4"),
             "state": packed(moments.state, "u1"),
             "below": _spots(spots),
+            **_face(run, moments, _planes(place, triangles, heights, position, outlines), along, scale.unit),
         },
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
@@ -135,6 +138,37 @@ def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[
             triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MAX_POINTS)
         used = np.unique(triangles)
     return used, np.searchsorted(used, triangles)
+
+
+def _outlines(run: SavedRun, moments: Moments) -> FloatArray:
+    """The outlines (k, c, 2) [m] of a part's face at the moments; of a point they have no corners."""
+    face = run.case.part.face
+    if face is None or moments.heading is None:
+        return np.empty((len(moments.time), 0, 2))
+    return face.outline(moments.position[:, :2], moments.heading)
+
+
+def _planes(
+    points: FloatArray, triangles: IntArray, heights: FloatArray, position: FloatArray, outlines: FloatArray
+) -> FloatArray:
+    """Planes (k, 3) through the surface under outlines (k, c, 2) [m]: their heights [m] at positions, and slopes."""
+    spots = spots_of(points, triangles, outlines.reshape(-1, 2))
+    moment = np.repeat(np.arange(len(outlines)), outlines.shape[1])[:, None]
+    z = (heights[moment, spots.corners] * spots.weights).sum(axis=1).reshape(outlines.shape[:2])
+    around = np.insert(outlines - position[:, None, :2], 0, 1.0, axis=2)
+    return np.asarray((np.linalg.pinv(around) @ z[..., None])[..., 0])
+
+
+def _face(run: SavedRun, moments: Moments, planes: FloatArray, along: Unit, up: Unit) -> dict[str, Any]:
+    """A part's face, how far it is turned [rad] and on which planes (k, 3) it lies; of a point nothing."""
+    face = run.case.part.face
+    if face is None or moments.heading is None:
+        return {}
+    return {
+        "face": (face.outline((0.0, 0.0), 0.0) * along.per_si).tolist(),
+        "heading": packed(moments.heading, "f8"),
+        "plane": packed(planes * up.per_si / [1.0, along.per_si, along.per_si], "f4"),
+    }
 
 
 def _lines(points: FloatArray, triangles: IntArray, box: FloatArray) -> dict[str, Any]:

@@ -6,7 +6,9 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
+from page_files import FACED
 
 from coupling import read_case, run_case
 
@@ -52,10 +54,10 @@ def browser():
 
 
 @pytest.fixture
-def opened(browser, tmp_path):
+def opened(browser, tmp_path, request):
     """The page of a case, and its program; afterwards only its own address was asked for, and nothing failed."""
     path = tmp_path / "mine.toml"
-    path.write_text("# Mine.\n" + CASE)
+    path.write_text("# Mine.\n" + getattr(request, "param", CASE))
     command = [sys.executable, "-m", "active_surface", "app", str(path), "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
         address = program.stdout.readline().split()[1]
@@ -172,6 +174,34 @@ def test_fields_sliders_and_the_start_on_the_map_follow_each_other(opened):
     field.send_keys("-31 um", Keys.ENTER)
     wait(lambda: browser.execute_script("return caseData.map.start[1]") == pytest.approx(-31))
     assert shown(1) == pytest.approx(-31, abs=0.05) and shown(0) == dragged
+
+
+OUTLINE = """
+const numbers = element(`${arguments[0]}-face`).getAttribute("d").match(/-?[\\d.]+(e-?\\d+)?/g).map(Number);
+return [numbers.filter((_, k) => k % 2 === 0), numbers.filter((_, k) => k % 2).map((y) => -y)];
+"""
+
+
+@pytest.mark.parametrize("opened", [FACED], indirect=True)
+def test_a_slider_turns_the_outline_at_the_start_and_the_others_follow(opened):
+    browser, path = opened
+    part = read_case(path).part
+
+    def shown(which):
+        return np.transpose(browser.execute_script(OUTLINE, which))[:6] * 1e-6
+
+    assert shown("start") == pytest.approx(part.face.outline(part.position, part.heading), abs=1e-10)
+    turn = "const { slider } = knobs.get('part.heading'); slider.value = 250; slider.dispatchEvent(new Event('input'));"
+    browser.execute_script("delete document.body.dataset.ready;" + turn)
+    turned = part.face.outline(part.position, -np.pi / 2)
+    assert shown("start") == pytest.approx(turned, abs=1e-10)
+    browser.execute_script("knobs.get('part.heading').slider.dispatchEvent(new Event('change')); show(last)")
+    wait(lambda: browser.execute_script("return document.body.dataset.ready") == "run")
+    assert shown("start") == pytest.approx(turned, abs=1e-10)
+    browser.execute_script("show(last)")
+    end = run_case(read_case(path).vary({"part.heading": "-90 deg"})).trajectory
+    outline = part.face.outline(end.position[-1], end.heading[-1])
+    assert shown("end") == pytest.approx(outline, abs=1e-10) and shown("here") == pytest.approx(outline, abs=1e-10)
 
 
 def test_on_a_phone_the_map_takes_a_third_at_most(opened):

@@ -76,6 +76,17 @@ def test_the_page_changes_no_names_of_files(path):
     assert not allowed(read_case(examples_folder() / "two_actuators.toml"), path)
 
 
+def test_a_part_with_a_face_turns_and_its_own_area_counts():
+    point = read_case(examples_folder() / "two_actuators.toml")
+    rough = {"friction": {"model": "kogut-etsion", "preset": "paper"}}
+    faced = read_case(examples_folder() / "face.toml").vary(rough)
+    only_one = {"part.heading", "part.sides.0", "part.sides.1", "part.thickness", "friction.contact_area"}
+    assert only_one & {knob["path"] for knob in knobs(point)} == {"friction.contact_area"}
+    assert only_one - {knob["path"] for knob in knobs(faced)} == {"friction.contact_area"}
+    turned = faced.vary(changes_of(faced, "part.heading", "-30 deg") | changes_of(faced, "part.sides.0", "50 um"))
+    assert turned.part.heading == pytest.approx(-math.pi / 6) and turned.part.sides == (50e-6, 100e-6)
+
+
 def test_fields_have_their_units_and_take_any():
     case = read_case(examples_folder() / "transport.toml")
     units = {"actuators.0.stroke": "m", "actuators.*.frequency": "Hz", "plate.youngs_modulus": "Pa", "part.mass": "kg"}

@@ -2,7 +2,9 @@
 
 import time
 
+import numpy as np
 import pytest
+from page_files import FACED
 
 from active_surface.views.pages.run_page import write_run_page
 from coupling import read_case, run_case
@@ -20,7 +22,14 @@ NAME = "two <script>alert(1)</script>"
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
+def faced(tmp_path_factory):
+    path = tmp_path_factory.mktemp("faced") / "faced.toml"
+    path.write_text(FACED)
+    return run_case(read_case(path), path.parent, picture=False)
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory, faced):
     folder = tmp_path_factory.mktemp("pages")
     (folder / "base.toml").write_text(CASE)
     run_case(read_case(folder / "base.toml"), folder)
@@ -29,7 +38,8 @@ def pages(tmp_path_factory):
     single = read_run(folder / "base")
     for name in ("time", "position", "velocity", "state", "normal_force", "friction_force"):
         object.__setattr__(single, name, getattr(single, name)[:1])
-    return {"run": write_run_page(run, folder / "run.html"), "single": write_run_page(single, folder / "single.html")}
+    runs = {"run": run, "single": single, "faced": read_run(faced.files[0])}
+    return {name: write_run_page(one, folder / f"{name}.html") for name, one in runs.items()}
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +75,23 @@ def test_the_slider_moves_surface_part_trail_and_labels(open_page):
     lifted = pixels(browser, "surface")
     assert changed(surface, lifted) > 0.01  # the plate
     assert browser.execute_script("return document.getElementById('curves').layout.shapes[0].x0") == pytest.approx(2.6)
+
+
+def test_the_outline_of_a_face_is_to_scale_and_turned_at_the_last_step(open_page, faced):
+    browser = open_page("faced")
+    browser.find_element(By.ID, "step").send_keys(Keys.END)
+    drawn(browser)
+    x, y, z = browser.execute_script("const { x, y, z } = element('surface').data[FACE]; return [x, y, z]")
+    path = faced.trajectory
+    outline = faced.case.part.face.outline(path.position[-1], path.heading[-1]) * 1e6
+    assert np.column_stack([x[:6], y[:6]]) == pytest.approx(outline, abs=1e-4)
+    assert (x[0], y[0]) == (x[6], y[6]) and len(set(z[:6])) == 1
+    hand = np.arctan2(y[9] - y[8], x[9] - x[8])
+    assert hand == pytest.approx(path.heading[-1], abs=1e-6) and abs(hand - np.radians(30)) > 0.1
+    assert readout(browser)["heading"] == f"{np.degrees(path.heading[-1]):.1f} degrees"
+    browser.execute_script("show(0)")
+    drawn(browser)
+    assert readout(browser)["heading"] == "30.0 degrees"
 
 
 def test_it_plays_to_the_end_and_pauses(open_page):

@@ -8,20 +8,21 @@ from html import escape
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from page_files import CASE, NAME, numbers
+from matplotlib.tri import Triangulation
+from page_files import CASE, FACED, NAME, numbers
 from sweeps import PLATFORM
 
 from active_surface.cli.program import main
 from active_surface.views.pages.moments import heights_at, moments_of
 from active_surface.views.pages.run_curves import MAX_POINTS as MAX_MOMENTS
 from active_surface.views.pages.run_curves import _fewer, smooth_path
-from active_surface.views.pages.run_data import MAX_POINTS, run_data
+from active_surface.views.pages.run_data import MAX_POINTS, _planes, run_data
 from active_surface.views.pages.run_page import motion, write_run_page
 from coupling import read_case, report, run_case
 from coupling.results.saved import read_run
 from coupling.scene import lifts_of
 from coupling.summary import summary_of
-from particle import Event, EventKind
+from particle import Event, EventKind, Footprint
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +72,36 @@ def test_a_page_has_margins_and_names_the_actuator_at_its_events(run, result):
     slips = [k for k, event in enumerate(run.events) if event.kind is EventKind.SLIPS]
     assert slips and all(data["events"][k]["by"] == "actuator 0 adds most to the pull" for k in slips)
     assert data["events"][slips[0]]["text"].startswith("slips at ") and data["lost"] == ""
+
+
+@pytest.mark.compiled
+def test_a_page_has_heading_and_pressure_of_a_part_with_a_face(tmp_path):
+    (tmp_path / "faced.toml").write_text(FACED)
+    result = run_case(read_case(tmp_path / "faced.toml"), tmp_path, picture=False)
+    data = run_data(read_run(tmp_path / "faced"))
+    wanted = result.trajectory.at(numbers(data["time"]) * 1e-3)
+    assert np.ptp(wanted.heading) > 0.1
+    assert numbers(data["part"]["heading"]) == pytest.approx(wanted.heading, abs=1e-9)
+    curves = {}
+    for panel in data["curves"]["panels"]:
+        times = numbers(data["curves"]["times"][panel["time"]])
+        curves[panel["label"]] = panel["unit"], times, numbers(panel["lines"][0]["values"])
+    unit, times, heading = curves["Heading"]
+    assert unit == "degrees" and np.radians(heading) == pytest.approx(result.trajectory.at(times).heading, rel=1e-6)
+    unit, times, pressure = curves["Pressure"]  # without adhesion
+    assert unit == "of mean" and pressure == pytest.approx(result.trajectory.at(times).pressure_margin, rel=1e-5)
+    assert pressure.min() == pytest.approx(result.summary.least_pressure, rel=1e-6)
+
+
+def test_a_face_lies_on_the_plane_through_the_surface_under_its_outline():
+    sides = np.linspace(-1.0, 1.0, 81)
+    x, y = (axis.ravel() for axis in np.meshgrid(sides, sides))
+    triangles = Triangulation(x, y).triangles
+    places, face = np.array([[0.3, -0.2], [-0.4, 0.1]]), Footprint.rectangle(0.4, 0.2)
+    heights = np.stack([3 + 0.5 * x - 2 * y, x**2])  # of which the second has the slope 2 x under a symmetrical face
+    tilted, bowl = _planes(np.column_stack([x, y]), triangles, heights, places, face.outline(places, [0.5, 0.0]))
+    assert tilted == pytest.approx([3 + 0.5 * 0.3 + 2 * 0.2, 0.5, -2])
+    assert bowl == pytest.approx([0.4**2 + 0.2**2, -0.8, 0], abs=1e-3)  # its corners are .2 away
 
 
 def test_actuators_of_slips_are_counted(run):

@@ -61,6 +61,12 @@ function largest(...arrays) {
   return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value) || 0), 0)));
 }
 
+// A face with these corners at a place, turned by a heading [rad]: its outline, and a hand from its middle along its x.
+function faceAt(corners, [x, y], heading) {
+  const [c, s] = [Math.cos(heading), Math.sin(heading)], tip = [Math.max(...corners.map(([along]) => along)), 0];
+  return [[...corners, corners[0]], [[0, 0], tip]].map((line) => line.map(([a, b]) => [x + c * a - s * b, y + s * a + c * b]));
+}
+
 // Plotly reads markup in labels; a text of the user's has none.
 function plain(text) {
   return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");

@@ -10,6 +10,7 @@ function takeCurves() {
   moments = pageData.curves.times.map((times) => unpack(times).map((t) => t * pageData.perSecond));
   time = unpack(pageData.time);
   last = time.length - 1;
+  element("curves").style.height = panels.length > 6 ? `${110 * panels.length}px` : ""; // else as page.css has it
 }
 
 // Bands behind the curves while the part is stuck or in flight.

@@ -18,12 +18,15 @@ function readOut(step) {
     ["state", state],
     ...(pageData.events.length ? [["last event", latest ? [latest.text, latest.by].filter(Boolean).join("; ") : "none yet"]] : []),
     [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
+    ...(part.face ? [["heading", `${beside(degrees(part.heading[step]), degrees(largest(part.heading)))} degrees`]] : []),
     ["height", `${beside(part.height[step], largest(part.height))} ${units.height}`],
     [pageData.counted ? "speed over the platform" : "speed in the plane", `${beside(part.speed[step], largest(part.speed))} ${units.speed}`],
     ["normal load", `${beside(load[step], largest(load))} ${pageData.load.unit}`],
     ["friction", `${beside(friction[step], largest(friction))} ${pageData.friction.unit}`],
   ]);
 }
+
+function degrees(radians) { return radians * 180 / Math.PI; }
 
 // As many decimals as tell one step from the next.
 function decimals() {

@@ -5,20 +5,21 @@ let below; // the part, at every step
 let still; // the places of traces that move only up and down
 const FLYING = 2; // of the part's states
 // Of the surface's length, by which what lies on it is lifted so that it is seen: the part is a ball that big.
-const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.035 };
+const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.035, face: 0.008 };
 const SPACE = 1.55; // the longest diagonal that the cameras take in
 const EYES = {
   slanted: { eye: { x: 0.75, y: -1.15, z: 0.72 }, up: { x: 0, y: 0, z: 1 } },
   above: { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
   side: { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
 };
-const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
+const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6, FACE = 7;
 let closeBy = false, exaggeration = 1, shown = 0;
 
 // What this file draws, from the data of the page.
 function takeSurface() {
   surface = unpackSurface(pageData.surface);
   part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
+  if (pageData.part.face) Object.assign(part, { face: pageData.part.face, heading: unpack(pageData.part.heading), plane: unpack(pageData.part.plane) });
   trail = { ...unpackSpots(pageData.trail), step: unpack(pageData.trail.step) };
   below = unpackSpots(pageData.part.below);
   units = pageData.units;
@@ -111,17 +112,34 @@ function trailAt(step, z) {
   return { passed, ahead };
 }
 
+// The face of the part at a step, on the plane of its own; a point has none.
+function outlineAt(step) {
+  const found = { x: [], y: [], z: [] }, [middle, ...slopes] = part.plane.subarray(3 * step, 3 * step + 3), here = [part.x[step], part.y[step]];
+  for (const [x, y] of faceAt(part.face, here, part.heading[step]).flatMap((line) => [...line, [null, null]])) {
+    found.x.push(x);
+    found.y.push(y);
+    found.z.push(x === null ? null : middle + slopes[0] * (x - here[0]) + slopes[1] * (y - here[1]));
+  }
+  return found;
+}
+
 // What the traces of the surface show at a step.
 function changingAt(step) {
   const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
   const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
-  return {
+  const now = {
     x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]]],
     y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]]],
     z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
-      ahead.z, passed.z, raised([part.z[step]], "part")],
-    intensity: [z, ...Array(PART).fill(undefined)],
+      ahead.z, passed.z, raised([part.z[step]], part.face ? "face" : "part")],
   };
+  if (part.face) {
+    const outline = outlineAt(step);
+    now.x.push(outline.x);
+    now.y.push(outline.y);
+    now.z.push(raised(outline.z, "face"));
+  }
+  return { ...now, intensity: [z, ...Array(now.z.length - 1).fill(undefined)] };
 }
 
 function drawSurface() {
@@ -151,8 +169,9 @@ function drawSurface() {
     { ...quiet, mode: "lines", x: now.x[TRAIL], y: now.y[TRAIL], z: now.z[TRAIL], name: "trail", showlegend: true,
       line: { color: PATH, width: 6 } },
     { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: "part", showlegend: true,
-      marker: { size: 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
+      marker: { size: part.face ? 4 : 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
   ];
+  if (part.face) traces.push({ ...quiet, mode: "lines", x: now.x[FACE], y: now.y[FACE], z: now.z[FACE], line: { color: "#000000", width: 5 } });
   const axis = { showbackground: false, gridcolor: GRID, zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
   const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
   const layout = {
