@@ -10,6 +10,7 @@ from coupling.pictures.figure import (
     put_title,
     save_picture,
 )
+from coupling.pictures.parts import PARTS_COLOURS, draw_parts
 from coupling.pictures.plate import (
     PITCHES,
     PlateView,
