@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from common import DEADLY, check_hdf5, survives
 from coupling.case import Case
 from coupling.margins import LOSSES, MarginCurves
+from coupling.parts import Overlap
 from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import (
     ENDINGS,
@@ -78,6 +79,7 @@ class SavedRun:
     plate_fields: tuple[str, ...]
     plate_path: Path = field(repr=False)
     part_path: Path = field(repr=False)
+    overlaps: tuple[Overlap, ...] = field(default=(), repr=False)  # of many parts, all first ones
 
     @cached_property
     def case(self) -> Case:
@@ -210,7 +212,10 @@ def _surface(plate: h5py.File) -> dict[str, Any]:
     """What the plate's file holds beside its steps; raises ValueError where that does not fit together."""
     points, corners = (np.asarray(plate[f"VTKHDF/{name}"][()]) for name in ("Points", "Connectivity"))
     triangles = checked_cells(points, corners)
-    return {"points": points[:, :2], "triangles": triangles, "plate_fields": tuple(plate["VTKHDF/PointData"])}
+    found = json.loads(plate["active_surface"].attrs["summary"]).get("overlaps", ())
+    overlaps = tuple(Overlap(tuple(one["parts"]), float(one["time"])) for one in found)
+    fields = tuple(plate["VTKHDF/PointData"])
+    return {"points": points[:, :2], "triangles": triangles, "plate_fields": fields, "overlaps": overlaps}
 
 
 def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: int) -> SavedRun:
@@ -264,13 +269,15 @@ def _pair(path: Path) -> dict[str, Path]:
     name, kind, _ = split(path)
     found: dict[str, list[Path]] = {}
     for one in KINDS:
-        bases = [name, *([name.rpartition(".")[0]] if one == "plate" and "." in name else [])]  # which many parts share
-        files = [path.with_name(f"{base}{part}.{one}{SUFFIX}") for base in bases for part in ("", PARTIAL)]
-        found[one] = [file for file in ([path] if one == kind else files) if file.is_file()]
+        both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
+        found[one] = [file for file in both if file.is_file()]
+    if found["part"] and kind != "plate":  # it may share its plate with other parts
+        shared = [path.with_name(f"{name.rpartition('.')[0]}{part}.plate{SUFFIX}") for part in ("", PARTIAL)]
+        found["plate"] += [file for file in shared if file.is_file()]
     if missing := [one for one in KINDS if not found[one]]:
         if kind is None and not any(found.values()) and (other := described(path)):
             raise ValueError(f"{EXPECTED}; got {path}, {other}")
-        if found["plate"] and len(parts := part_names(found["plate"][0])) > 1 and parts[0] != name:
+        if found["plate"] and len(parts := part_names(found["plate"][0])) > 1:
             one_of = " or ".join(str(path.with_name(part)) for part in parts)
             raise ValueError(f"{EXPECTED} of one part; got {path}, of {len(parts)}: name {one_of}")
         one = kind if kind in missing else missing[0]

@@ -74,11 +74,13 @@ def check(file: Path) -> Answer:
         figures = {"actuators": actuators, "target": target}
         text = f"an aim of {case.name}, {count(actuators, 'actuator')}"
     else:
-        from coupling import report
-
         cases = read_all(file)
         case, actuators = cases[0], len(cases[0].actuators)
-        warnings = report.warnings_of_parts({one.name: _warnings(one) for one in cases})
+        warnings = _warnings(case)
+        if len(cases) > 1:
+            from coupling import report  # loads numerics
+
+            warnings = report.warnings_of_parts({one.name: _warnings(one) for one in cases})
         figures = {"actuators": actuators, "duration": case.run.duration, "parts": len(cases)}
         text = f"{count(actuators, 'actuator') if actuators else 'a platform'}, {case.run.duration * 1e3:g} ms"
         text += f", {count(len(cases), 'part')}" * (len(cases) > 1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from typing import Any, Final
 
 import numpy as np
@@ -15,8 +17,8 @@ from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
 from common import Unit, unit_for
 from coupling import report
-from coupling.pictures import MARKS, Scale, path_window
-from coupling.results import SavedRun
+from coupling.pictures import MARKS, PARTS_COLOURS, Scale, path_window, samples_of
+from coupling.results import SavedRun, name_of
 from fem_plate import extent
 from particle import EventKind, State, stretches
 
@@ -31,10 +33,11 @@ COUNTS: Final = {EventKind.SLIPS: report.PULLS, EventKind.DETACHES: report.LIFTS
 COLOURS: Final = 11  # stops of the colour scale
 
 
-def run_data(run: SavedRun) -> dict[str, Any]:
-    """What the programs of the page read."""
+def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
+    """What the programs of the page read; others: over the same surface, whose parts are shown as well."""
     moments = moments_of(run)
-    points, triangles = _around(run.points, run.triangles, moments.position[:, :2])
+    paths = np.concatenate([one.rows.position for one in (run, *others)])
+    points, triangles = _around(run.points, run.triangles, np.concatenate([moments.position[:, :2], paths]))
     heights = heights_at(run, moments, points)
     place = run.points[points]
     length = float(np.ptp(place, axis=0).max())
@@ -46,7 +49,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     box = np.stack([place.min(axis=0), place.max(axis=0)])
-    window = path_window(run.rows.position, box, run.actuators)
+    window = path_window(paths, box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     marked = np.flatnonzero(points < len(run.actuators))
     in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
@@ -85,6 +88,11 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "state": packed(moments.state, "u1"),
             "below": _spots(spots),
         },
+        "name": part_of(run) if others else "part",
+        "others": [
+            _beside(one, colour, moments.time, heights, place, triangles, along, scale)
+            for one, colour in zip(others, cycle(PARTS_COLOURS[1:]), strict=False)
+        ],
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
         "curves": curves_of(run, along),
@@ -95,6 +103,32 @@ def run_data(run: SavedRun) -> dict[str, Any]:
         "moreEvents": max(len(run.events) - MAX_EVENTS, 0),
         "lost": MARKS[run.loss.kind][3] if run.loss and run.complete else "",
     }
+
+
+def part_of(run: SavedRun) -> str:
+    """The name of the part of a run of many."""
+    return run.name.removeprefix(f"{name_of(run.plate_path)}.")
+
+
+def _beside(
+    run: SavedRun,
+    colour: str,
+    times: FloatArray,
+    heights: FloatArray,
+    place: FloatArray,
+    triangles: IntArray,
+    along: Unit,
+    scale: Scale,
+) -> dict[str, Any]:
+    """Another part at the moments (k,) [s] of the page, at which points (n, 2) [m] have heights (k, n) [m]."""
+    known = samples_of(run)
+    x, y, z = (np.interp(times, known.time, values) for values in (*known.position.T, known.height))
+    spots = spots_of(place, triangles, np.column_stack([x, y]))
+    flies = known.state[np.searchsorted(known.time, times, side="right") - 1] == State.FLIGHT
+    drawn = np.where(flies, z, spots.heights(heights))
+    places = {"x": x * along.per_si, "y": y * along.per_si, "z": drawn * scale.unit.per_si}
+    packed_places = {key: packed(values, "f4") for key, values in places.items()}
+    return {"name": part_of(run), "colour": colour, **packed_places, "below": _spots(spots)}
 
 
 def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:

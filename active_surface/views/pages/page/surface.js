@@ -1,6 +1,7 @@
 // The surface of a run in three dimensions, with the part and its trail on it at the step that is shown.
 
 let surface, part, trail, units;
+let others = []; // further parts of the run
 let below; // the part, at every step
 let still; // the places of traces that move only up and down
 const FLYING = 2; // of the part's states
@@ -21,6 +22,7 @@ function takeSurface() {
   part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
   trail = { ...unpackSpots(pageData.trail), step: unpack(pageData.trail.step) };
   below = unpackSpots(pageData.part.below);
+  others = (pageData.others ?? []).map((one) => ({ ...one, ...Object.fromEntries(["x", "y", "z"].map((name) => [name, unpack(one[name])])), below: unpackSpots(one.below) }));
   units = pageData.units;
   still = Object.fromEntries(["x", "y"].map((axis) => [axis, [alongRim(surface[axis]), atActuators(surface[axis])]]));
 }
@@ -111,16 +113,24 @@ function trailAt(step, z) {
   return { passed, ahead };
 }
 
+// The trails of the other parts up to a step, on the surface as it is now, each followed by the part itself.
+function othersAt(step, z) {
+  return others.flatMap((one) => [
+    { x: one.x.slice(0, step + 1), y: one.y.slice(0, step + 1), z: Array.from({ length: step + 1 }, (_, k) => valueAt(one.below, k, z) + lift("trail")) },
+    { x: [one.x[step]], y: [one.y[step]], z: [one.z[step] + lift("part")] },
+  ]);
+}
+
 // What the traces of the surface show at a step.
 function changingAt(step) {
-  const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
+  const z = heightsAt(step), { passed, ahead } = trailAt(step, z), beside = othersAt(step, z);
   const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
   return {
-    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]]],
-    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]]],
+    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]], ...beside.map((one) => one.x)],
+    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]], ...beside.map((one) => one.y)],
     z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
-      ahead.z, passed.z, raised([part.z[step]], "part")],
-    intensity: [z, ...Array(PART).fill(undefined)],
+      ahead.z, passed.z, raised([part.z[step]], "part"), ...beside.map((one) => one.z)],
+    intensity: [z, ...Array(PART + beside.length).fill(undefined)],
   };
 }
 
@@ -150,8 +160,12 @@ function drawSurface() {
       line: { color: SOFT, width: 2 } },
     { ...quiet, mode: "lines", x: now.x[TRAIL], y: now.y[TRAIL], z: now.z[TRAIL], name: "trail", showlegend: true,
       line: { color: PATH, width: 6 } },
-    { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: "part", showlegend: true,
+    { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: pageData.name ?? "part", showlegend: true,
       marker: { size: 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
+    ...others.flatMap(({ name, colour }, k) => [PART + 1 + 2 * k, PART + 2 + 2 * k].map((n) => ({
+      ...quiet, mode: n % 2 ? "lines" : "markers", x: now.x[n], y: now.y[n], z: now.z[n], name, showlegend: n % 2 === 0,
+      line: { color: colour, width: 6 }, marker: { size: 8, color: colour, line: { color: "#000000", width: 2 } },
+    }))),
   ];
   const axis = { showbackground: false, gridcolor: GRID, zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
   const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
