@@ -42,6 +42,11 @@ def is_of(run: SavedRun, path: Path) -> bool:
     return any(json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files) for now in cases)
 
 
+def part_of(run: SavedRun) -> str:
+    """The name of the part of a run of many."""
+    return run.name.removeprefix(f"{name_of(run.plate_path)}.")
+
+
 def _of_file(path: Path, folder: Path) -> ResultFile:
     tables = parse(path).tables
     expected = f"a result, or a file whose result is in {folder} or beside it"

@@ -32,7 +32,7 @@ def animate(
 ) -> Answer:
     """Make a film of RESULT: the plate's heights, the part and its trail.
 
-    RESULT is one of the two files of a run, finished or partial, or FOLDER/NAME.
+    RESULT is a file of a run, finished or partial, or FOLDER/NAME.
     """
     from active_surface.views.film import animate as make
 

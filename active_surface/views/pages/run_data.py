@@ -15,10 +15,11 @@ from active_surface.views.modes import modes_of
 from active_surface.views.pages.moments import MAX_EVENTS, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
+from active_surface.views.result_file import part_of
 from common import Unit, unit_for
 from coupling import report
 from coupling.pictures import MARKS, PARTS_COLOURS, Scale, path_window, samples_of
-from coupling.results import SavedRun, name_of
+from coupling.results import SavedRun
 from fem_plate import extent
 from particle import EventKind, State, stretches
 
@@ -103,11 +104,6 @@ def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
         "moreEvents": max(len(run.events) - MAX_EVENTS, 0),
         "lost": MARKS[run.loss.kind][3] if run.loss and run.complete else "",
     }
-
-
-def part_of(run: SavedRun) -> str:
-    """The name of the part of a run of many."""
-    return run.name.removeprefix(f"{name_of(run.plate_path)}.")
 
 
 def _beside(

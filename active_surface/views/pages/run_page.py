@@ -8,7 +8,8 @@ from html import escape
 from pathlib import Path
 
 from active_surface.views.pages.page_file import part, rows_of, trust_of, write_page
-from active_surface.views.pages.run_data import part_of, run_data
+from active_surface.views.pages.run_data import run_data
+from active_surface.views.result_file import part_of
 from common import unit_for
 from coupling import report, summary_of
 from coupling.results import SavedRun, name_of
