@@ -135,6 +135,12 @@ def test_outlines_overlap_where_their_areas_do() -> None:
             near = (np.maximum(u, v) < 3.1) & (np.minimum(u, v) < 1.1)
             assert near.any() and depth.size
     assert 100 < found.sum() < 300
+    cos, sin = np.cos(headings[:, 0]), np.sin(headings[:, 0])
+    u, v = np.abs(cos * places[:, 0] + sin * places[:, 1]), np.abs(cos * places[:, 1] - sin * places[:, 0])
+    inside = (np.maximum(u, v) < 3) & (np.minimum(u, v) < 1)
+    assert np.array_equal(overlapping((first, 0.0), (places[:, None], 0.0)), inside)
+    small = overlapping((places[:, None], 0.1), (first, 0.0))
+    assert small[inside].all() and not small[(np.maximum(u, v) > 3.1) | (np.minimum(u, v) > 1.1)].any()
     around, radius = np.zeros((400, 1, 2)), 1.5
     beyond = np.linalg.norm(places, axis=1) - radius
     discs = overlapping((around, radius), (places[:, None], 0.0))
