@@ -12,7 +12,7 @@ from typing import Any, Final
 HERE: Final = Path(__file__).resolve().parent
 NAMED: Final = (("study", "case"), ("study", "points"), ("aim", "case"), ("plate", "mesh"), ("plate", "motion"))
 """Tables and keys that name other files."""
-COMMANDS: Final = {"study": "sweep", "aim": "aim", "case": "run"}
+COMMANDS: Final = {"study": "sweep", "aim": "aim", "parts": "run", "case": "run"}
 """The command for a kind of file."""
 
 
@@ -74,9 +74,9 @@ def command_of(name: str) -> str:
 
 
 def kind_of(name: str) -> str:
-    """What an example is: a "study", an "aim" or a "case"."""
+    """What an example is: a "study", an "aim", a "case", or one of many "parts"."""
     tables = tomllib.loads((examples_folder() / f"{name}.toml").read_text(encoding="utf-8"))
-    return next((kind for kind in ("study", "aim") if kind in tables), "case")
+    return next((kind for kind in ("study", "aim", "parts") if kind in tables), "case")
 
 
 def _has(path: Path, content: bytes) -> bool:

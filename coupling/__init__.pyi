@@ -1,7 +1,14 @@
-from .case import Case as Case, CaseError as CaseError, InputError as InputError, read_case as read_case
+from .case import (
+    Case as Case,
+    CaseError as CaseError,
+    InputError as InputError,
+    read_case as read_case,
+    read_parts as read_parts,
+)
 from .results.csv_file import write_csv as write_csv
 from .results.saved import SavedRun as SavedRun, read_run as read_run
-from .batch import run_cases as run_cases
+from .batch import run_cases as run_cases, run_parts as run_parts
+from .parts import PartsResult as PartsResult
 from .result import Result as Result
 from .run import build_surface as build_surface, run_case as run_case
 from .surface.file import read_surface as read_surface, write_surface as write_surface

@@ -1,22 +1,36 @@
-"""Batch: many paths at once, those over one surface side by side, and many cases with each plate solved once."""
+"""Batch: many paths at once, those over one surface side by side; many cases, each plate solved once; many parts."""
 
 from __future__ import annotations
 
+import json
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
 from typing import Final, NamedTuple
 
-from coupling.case import Case, RunCase
-from coupling.margins import PathLoads
+from coupling.case import PART_NAME, Case, RunCase, plain_case
+from coupling.files import check_folder
 from coupling.part import build_friction, build_part
+from coupling.parts import PartsResult, overlaps_of
 from coupling.progress import Progress, ProgressCallback, no_progress, silent
 from coupling.result import Result
-from coupling.run import check_case, one_blas_thread, simulate_run, tighter_run
+from coupling.results import Output, record_of, write_results
+from coupling.run import (
+    build_scene,
+    check_case,
+    draw_picture,
+    judged,
+    one_blas_thread,
+    simulate_run,
+    tighter_run,
+)
 from coupling.scene import PlateScene, Scene
 from coupling.shared import answers_drives
 from coupling.solved_plates import SolvedPlates
-from coupling.summary import summarise
+from fem_plate import PlateShapes
 from particle import (
     AnyDrive,
     Body,
@@ -150,12 +164,85 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
         results = []
         with progress("Checking the model's validity") as tell:
             for case, scene, path, tighter in zip(cases, scenes, paths[::2], paths[1::2], strict=True):
-                friction = build_friction(case)
-                loads = PathLoads(case, scene.surface, path, friction)
-                summary = summarise(case, scene, loads, tighter, friction)
-                results.append(Result(case, scene, path, summary, loads))
+                results.append(judged(case, scene, path, tighter))
                 tell(len(results), len(cases))
     return results
+
+
+def run_parts(
+    cases: Sequence[Case],
+    name: str = "parts",
+    output: str | Path | None = None,
+    progress: Progress = silent,
+    csv: bool = False,
+    save_surface: bool = False,
+    forces: bool = False,
+    shapes: PlateShapes | None = None,
+    picture: bool = True,
+) -> PartsResult:
+    """Run cases that differ in their parts only, which move over one surface and do not feel each other.
+
+    Each path has the bits of `run_case`. Where two faces overlap, or a point is on a face, both go on.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        One for each part, named as it is: those of `read_parts`, or `case.vary({"part.position": ...}, "left")`.
+    name : str
+        NAME of the files.
+    output : path, optional
+        Folder for NAME.plate.vtkhdf, a NAME.PART.part.vtkhdf for each part and NAME.png.
+    progress, csv, save_surface, forces, shapes, picture
+        As of `run_case`; there is a NAME.PART.csv for each part.
+
+    Returns
+    -------
+    result : PartsResult
+        The results by the names of the parts, and their overlaps.
+
+    Raises
+    ------
+    ValueError
+        Cases differ in more than their parts, or two have one name; else as `run_case`.
+    OSError
+        A file that the cases read is gone.
+    """
+    for number, case in enumerate(cases):
+        check_case(case, f"cases[{number}] of run_parts")
+    names = [case.name for case in cases]
+    grounds = [{key: table for key, table in plain_case(case).items() if key != "part"} for case in cases]
+    fit = bool(names) and len({*names}) == len(names) and all(re.match(PART_NAME, part) for part in names)
+    if not fit or any(ground != grounds[0] for ground in grounds):
+        raise ValueError(
+            "Input cases of run_parts must be cases that differ in [part] only, each with a name of its own, at most "
+            "40 letters, digits, - and _"
+        )
+    of_parts = [f"{name}.{part}" for part in names]
+    wanted = None if output is None else Output(Path(output), csv, save_surface, forces, picture)
+    if wanted is not None:
+        check_folder(wanted.folder)
+        for file in (name, *of_parts):
+            wanted.check(file)
+    with one_blas_thread():
+        records = [record_of(case) for case in cases] if wanted else []  # files may be others when paths are found
+        scene = build_scene(cases[0], progress, shapes)
+        runs = cases[0].run, tighter_run(cases[0].run, scene.surface)
+        tasks = [PathTask(scene.surface, build_part(case), build_friction(case), run) for run in runs for case in cases]
+        with progress("Following the parts") as tell:
+            paths = follow(tasks, tell=tell)
+        results: dict[str, Result] = {}
+        with progress("Checking the model's validity") as tell:
+            for case, path, tighter in zip(cases, paths, paths[len(cases) :], strict=False):
+                results[case.name] = judged(case, scene, path, tighter)
+                tell(len(results), len(cases))
+        found = PartsResult(name, results, overlaps_of(results))
+        if wanted is None:
+            return found
+        with progress("Writing the results") as tell:
+            of_run = dict(zip(of_parts, zip(results.values(), records, strict=True), strict=True))
+            of_all = {"parts": json.dumps(names), "summary": json.dumps(found.as_dict())}
+            first, further = write_results(name, of_run, wanted, tell, of_all)
+            return replace(found, files=(*first, *draw_picture(found, name, wanted), *further))
 
 
 def _tasks(case: Case, scene: Scene, plates: SolvedPlates) -> list[PathTask]:

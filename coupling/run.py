@@ -119,24 +119,31 @@ def run_over(
         trajectory = interruptible(follow_part, case, scene.surface, friction)
         tighter = interruptible(follow_part, case, scene.surface, friction, True)
     with progress("Checking the model's validity"):
-        loads = PathLoads(case, scene.surface, trajectory, friction)
-        summary = summarise(case, scene, loads, tighter, friction)
-    result = Result(case, scene, trajectory, summary, loads)
+        result = judged(case, scene, trajectory, tighter)
     if output is None or record is None:
         return result
     with progress("Writing the results") as tell:
-        of_run, further = write_results(result, record, output, tell)
-        picture = _draw(result, output.folder) if output.picture else ()
+        of_run, further = write_results(case.name, {case.name: (result, record)}, output, tell)
+        picture = draw_picture(result, case.name, output)
     return replace(result, files=(*of_run, *picture, *further))
 
 
-def _draw(result: Result, folder: Path) -> tuple[Path, ...]:
-    """Draw the picture of a run, if that can be."""
-    path = folder / f"{result.case.name}.png"
+def judged(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory) -> Result:
+    """The result of a path; tighter: the one that it is compared with."""
+    friction = build_friction(case)
+    loads = PathLoads(case, scene.surface, trajectory, friction)
+    return Result(case, scene, trajectory, summarise(case, scene, loads, tighter, friction), loads)
+
+
+def draw_picture(run: object, name: str, output: Output) -> tuple[Path, ...]:
+    """Draw the picture of a run, if it is wanted and that can be."""
+    path = output.folder / f"{name}.png"
     try:
+        if not output.picture:
+            return ()
         from coupling.pictures import draw_run  # here, because it loads matplotlib
 
-        return (draw_run(result, path),)
+        return (draw_run(run, path),)
     except Exception as error:  # the run is finished, whatever becomes of its picture
         warn(f"{path} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
         return ()

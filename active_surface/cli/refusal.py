@@ -134,3 +134,11 @@ def read(file: Path, may_move: bool = False) -> Case:
 
     check_kind(file, "case")
     return read_case(file, may_move)
+
+
+def read_all(file: Path) -> list[Case]:
+    """The cases of the parts in a file."""
+    from coupling.case import read_parts
+
+    check_kind(file, "case")
+    return read_parts(file)

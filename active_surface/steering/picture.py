@@ -19,6 +19,7 @@ from coupling.pictures import (
     PlateView,
     clear_labels,
     draw_maps,
+    draw_path,
     map_axes,
     path_window,
     put_keys,
@@ -77,7 +78,8 @@ def _draw(result: SteeringResult, title: str, path: Path) -> Path:
     figure = Drawing(figsize=((maps + 1) * SIZE + 0.8, SIZE + 0.9))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = [figure.add_subplot(1, maps + 1, k + 1) for k in range(maps + 1)]
-    keys, unit = draw_maps(axes[:maps], plate, trajectory, line, window)
+    keys, unit = draw_maps(axes[:maps], plate, window)
+    keys = draw_path(axes[maps - 1], trajectory, line, unit, plate.outline.box) + keys
     what = "The path over the plate" if window is None else "The plate"
     axes[0].set_title(f"{what}, and the actuators by their numbers", fontsize=10)
     if window is not None:

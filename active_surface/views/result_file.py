@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from active_surface.studies import ENDING
-from coupling.case import parse, read_case
+from coupling.case import parse, read_parts
 from coupling.results import ENDINGS, SavedRun, is_run, name_of, record_of
 
 
@@ -36,9 +36,15 @@ def result_of(path: Path, folder: Path) -> ResultFile:
 
 
 def is_of(run: SavedRun, path: Path) -> bool:
-    """Whether a run is of the case that a case file states now; raises ValueError or OSError where that is no case."""
-    now, then = record_of(read_case(path)), record_of(run.case)
-    return json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files)
+    """Whether a run is of a case that a case file states now; raises ValueError or OSError where that is no case."""
+    then = record_of(run.case)
+    cases = [record_of(case) for case in read_parts(path)]
+    return any(json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files) for now in cases)
+
+
+def part_of(run: SavedRun) -> str:
+    """The name of the part of a run of many."""
+    return run.name.removeprefix(f"{name_of(run.plate_path)}.")
 
 
 def _of_file(path: Path, folder: Path) -> ResultFile:

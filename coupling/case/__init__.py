@@ -12,7 +12,7 @@ from coupling.case.actuators import (
     half_size,
     must_be_inside,
 )
-from coupling.case.case import Case, read_case
+from coupling.case.case import Case, read_case, read_parts
 from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period
 from coupling.case.fields import Field, Value, find_field, lattice_of, plain_case
 from coupling.case.friction import (
@@ -23,7 +23,7 @@ from coupling.case.friction import (
     TableCase,
     has_known_law,
 )
-from coupling.case.part import PartCase
+from coupling.case.part import PART_NAME, PartCase
 from coupling.case.plates import (
     INERTIA,
     RATES,

@@ -20,6 +20,7 @@ from coupling.case.actuators import LatticeCase
 from coupling.case.checks import build
 from coupling.case.fields import lattice_of, locations_of, put_value
 from coupling.case.friction import KogutEtsionCase
+from coupling.case.part import UNUSED
 from coupling.case.plates import PlatformCase
 from coupling.case.table import Faults, InputError, mistakes_of
 from coupling.case.tables import CaseTables
@@ -34,7 +35,7 @@ class Case(CaseTables):
     """What one run simulates; `name` is the stem of the file it was read from, and `source` the text of that file.
 
     A lattice becomes actuators, after those that are given one by one; then there is no `lattice` any more. Measured
-    friction gets the points in its file, and has no `file` any more.
+    friction gets the points in its file, and has no `file` any more. Each of many parts has a case of its own.
     """
 
     name: str = "case"
@@ -47,7 +48,11 @@ class Case(CaseTables):
             return data
         own = {key: data[key] for key in ("name", "source") if key in data}
         tables = {key: value for key, value in data.items() if key not in own}
-        return build(CaseTables.model_validate(_with_actuators(tables), context={})) | own
+        if tables.get("parts"):
+            raise Faults(
+                [(("parts",), "must be left out, as each part has a case of its own: see read_parts, run_parts")]
+            )
+        return build(CaseTables.model_validate(_completed(tables), context={})) | own
 
     def vary(self, changes: Mapping[str, Any], name: str | None = None) -> Self:
         """The same case with other values in some fields.
@@ -140,17 +145,37 @@ def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
     may_move: accept that supports and actuators leave the plate free to move as a whole. Such a case does not run, but
     has frequency responses.
     """
+    cases = read_parts(path, may_move)
+    if len(cases) > 1:
+        only = "only `active-surface run` and `check` take more"
+        raise parse(path).error(
+            [(("parts",), f"must be one part here, for which there is [part]; got {len(cases)}; {only}")]
+        )
+    return cases[0]
+
+
+def read_parts(path: str | os.PathLike[str], may_move: bool = False) -> list[Case]:
+    """Read the case file at `path`, a case for each of its parts; raises as `read_case`.
+
+    These cases are alike but for their parts. Each of several has the name of its part, or its number from 0.
+    """
     file = parse(path)
     context = UNITS_REQUIRED | {"folder": Path(path).absolute().parent}
     try:
-        built = build(CaseTables.model_validate(_with_actuators(file.tables), context=context), may_move)
+        built = build(CaseTables.model_validate(_completed(file.tables), context=context), may_move)
     except (ValidationError, Faults) as error:
         raise file.error(mistakes_of(error, CaseTables, file.tables)) from None
-    return Case.model_construct(**built, name=Path(path).stem, source=file.text)
+    first, parts = Case.model_construct(**built | {"parts": ()}, name=Path(path).stem, source=file.text), built["parts"]
+    if len(parts) < 2:
+        return [first]
+    return [
+        first.model_copy(update={"part": part.alone, "name": part.named(number)}) for number, part in enumerate(parts)
+    ]
 
 
-def _with_actuators(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a case, which need no actuators beside a lattice or a platform."""
+def _completed(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a case, which need no actuators beside a lattice or a platform, and no [part] beside [[parts]]."""
     plate = tables.get("plate")
     platform = isinstance(plate, PlatformCase) or (isinstance(plate, dict) and plate.get("shape") == "platform")
-    return ({"actuators": ()} if platform or tables.get("lattice") is not None else {}) | dict(tables)
+    needless = {"actuators": ()} if platform or tables.get("lattice") is not None else {}
+    return needless | ({"part": UNUSED} if tables.get("parts") else {}) | dict(tables)

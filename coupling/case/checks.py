@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -21,6 +21,7 @@ from coupling.case.actuators import (
     must_be_inside,
 )
 from coupling.case.friction import KogutEtsionCase, TableCase
+from coupling.case.part import PartCase
 from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, MotionCase, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
 from coupling.case.tables import CaseTables, RunCase
@@ -44,11 +45,12 @@ ROUNDING: Final = 4 * sys.float_info.epsilon
 def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
     """The tables of a case: a lattice becomes actuators, and the points in the file of a friction law are read.
 
+    Of many parts `part` is the first.
     may_move: accept that supports and actuators leave the plate free to move as a whole.
     Raises Faults with every mistake.
     """
     mistakes: list[Mistake] = []
-    made, friction = tables.actuators, tables.friction
+    made, friction, parts = tables.actuators, tables.friction, _parts(tables)
     try:
         if isinstance(friction, TableCase):
             friction = friction.with_points()
@@ -61,45 +63,49 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
         try:
             mesh = _mesh_of(plate)
             made += actuators_of(tables.lattice, mesh) if tables.lattice else ()
-            mistakes += (misplaced := list(_places(tables, plate, mesh, made)))
+            mistakes += (misplaced := list(_places(tables, plate, mesh, made, parts)))
             mistakes += _theory(plate, tables.run, made, len(tables.actuators))
             if not (may_move or misplaced):
                 mistakes += _fixed(plate, mesh, made)
         except Faults as error:
             mistakes += error.mistakes
-    mistakes += _face(tables)
+    mistakes += _face(tables, parts)
     if wrong := _too_many(plate, made, tables.run.duration):
         mistakes.append((("run", "duration"), wrong))
     if mistakes:
         raise Faults(mistakes)
-    return {**dict(tables), "actuators": made, "friction": friction, "lattice": None}
+    first = next(iter(parts.values()))
+    return {**dict(tables), "actuators": made, "part": first, "friction": friction, "lattice": None}
 
 
-def _face(tables: CaseTables) -> Iterator[Mistake]:
-    """Yield what does not go with a part that has a footprint, or none, or with its local contact."""
-    run, friction, face = tables.run, tables.friction, tables.part.face
-    if tables.part.local_contact and not isinstance(friction, KogutEtsionCase):
-        yield (
-            ("part", "local_contact"),
-            f'must be false with model = "{friction.model}" in [friction]',
-        )
-    if tables.part.local_contact and run.scheme == "paper":
-        yield ("run", "scheme"), 'must be "events" or "fixed" with local_contact = true in [part]; got "paper"'
-    if face is None:
-        motion = getattr(tables.plate, "motion", None)
-        if isinstance(motion, MotionCase) and motion.turn is not None:
-            yield ("plate", "motion", "turn"), "must not be given without a footprint in [part]: a point has no heading"
+def _parts(tables: CaseTables) -> dict[Location, PartCase]:
+    """The parts by their places in the file."""
+    return {("parts", k): part.alone for k, part in enumerate(tables.parts)} or {("part",): tables.part}
+
+
+def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
+    """Yield what does not go with parts of which some have a footprint, or none has one, or with a local contact."""
+    run, friction, where = tables.run, tables.friction, "[[parts]]" if tables.parts else "[part]"
+    for place in (place for place, part in parts.items() if part.local_contact):
+        if not isinstance(friction, KogutEtsionCase):
+            yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
+        if run.scheme == "paper":
+            yield ("run", "scheme"), f'must be "events" or "fixed" with local_contact = true in {where}; got "paper"'
+    motion = getattr(tables.plate, "motion", None)
+    if isinstance(motion, MotionCase) and motion.turn is not None and any(part.face is None for part in parts.values()):
+        yield ("plate", "motion", "turn"), f"must not be given without a footprint in {where}: a point has no heading"
+    if all(part.face is None for part in parts.values()):
         if run.after_tipping == "ignore":
-            yield ("run", "after_tipping"), 'must be "stop" without a footprint in [part]: a point does not tip'
+            yield ("run", "after_tipping"), f'must be "stop" without a footprint in {where}: a point does not tip'
         return
     if run.scheme != "events":
-        yield ("run", "scheme"), f'must be "events" with a footprint in [part]; got "{run.scheme}"'
+        yield ("run", "scheme"), f'must be "events" with a footprint in {where}; got "{run.scheme}"'
     if run.after_detachment == "fly":
-        yield ("run", "after_detachment"), 'must be "stop" with a footprint in [part]; got "fly"'
+        yield ("run", "after_detachment"), f'must be "stop" with a footprint in {where}; got "fly"'
     if isinstance(friction, KogutEtsionCase) and "contact_area" in stated(friction):
         yield (
             ("friction", "contact_area"),
-            "must not be given with a footprint in [part], which has an area",
+            f"must not be given with a footprint in {where}, which has an area",
         )
 
 
@@ -126,8 +132,14 @@ def _mesh_of(plate: PlateCase) -> PlateMesh:
     raise Faults((("plate", plate.outlined_by), message) for message in wrong)
 
 
-def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequence[ActuatorCase]) -> Iterator[Mistake]:
-    """Yield what does not fit the plate's outline: names of boundaries, cells, actuators and part."""
+def _places(
+    tables: CaseTables,
+    plate: PlateCase,
+    mesh: PlateMesh,
+    made: Sequence[ActuatorCase],
+    parts: Mapping[Location, PartCase],
+) -> Iterator[Mistake]:
+    """Yield what does not fit the plate's outline: names of boundaries, cells, actuators and parts."""
     names = list(mesh.boundaries)
     for key in ("supports", "in_plane_supports"):
         supports = getattr(plate, key)
@@ -152,17 +164,17 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
     if not made:
         yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
     places: dict[Location, Place] = {("actuators", k, "position"): one.position for k, one in enumerate(made)}
-    places |= {("part", "position"): tables.part.position}
+    places |= {(*at, "position"): part.position for at, part in parts.items()}
     least = SAME_PLACE * half_size(mesh)
     for at, gap in zip(places, gaps(mesh, list(places.values())), strict=True):
         if gap <= mesh.least_gap:
             yield at, must_be_inside(gap, mesh)
-        elif at[0] == "part" and (face := tables.part.face) is not None:
-            corners = face.outline(tables.part.position, tables.part.heading)
+        elif (part := parts.get(at[:-1])) and (face := part.face) is not None:
+            corners = face.outline(part.position, part.heading)
             if (gap := gap - face.radius if face.radius else float(mesh.outline.gap(corners).min())) < 0:
                 beyond = f"got one that reaches {length_text(-gap)} beyond the rim"
                 yield at, f"must put all of the part on the plate; {beyond}"
-    for one, other in _shared(list(places.values())[:-1], least):
+    for one, other in _shared(list(places.values())[: len(made)], least):
         first = location_text(("actuators", one, "position"))
         if one >= alone:
             yield (

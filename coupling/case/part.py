@@ -1,4 +1,4 @@
-"""The `[part]` table of a case file: a point, or a body with a face that turns."""
+"""The `[part]` and `[[parts]]` tables of a case file: points, or bodies with a face that turns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, StrictStr
 
 from coupling.case.table import Contradictions, Table
 from coupling.case.values import (
@@ -139,3 +139,26 @@ class PartCase(Table):
     def gyration(self) -> float:
         """The radius of gyration of its face about the centroid [m], by which angles count as lengths; of a point 0."""
         return 0.0 if self.face is None else math.sqrt(float(self.face.second_moments.trace()))
+
+
+PART_NAME: Final = r"^[\w-]{1,40}$"
+
+
+class NamedPart(PartCase):
+    """One of many parts, none of which feels the others."""
+
+    name: StrictStr | None = Field(default=None, pattern=PART_NAME, examples=["left"])
+    """The name of one of many parts, also in the names of its files; without it its number."""
+
+    def named(self, number: int) -> str:
+        """Its name, or else its number."""
+        return self.name or str(number)
+
+    @property
+    def alone(self) -> PartCase:
+        """The same without its name."""
+        return PartCase.model_construct(**{key: value for key, value in self if key != "name"})
+
+
+UNUSED: Final = PartCase(mass=1.0, position=(0.0, 0.0))
+"""Stands for [part] where there are [[parts]]."""

@@ -41,6 +41,7 @@ RULES: Final = {
     "int_type": "a whole number",
     "finite_number": "a finite number",
     "string_type": "text",
+    "string_pattern_mismatch": "at most 40 letters, digits, - and _",
     "bool_type": "true or false",
     "greater_than": "greater than {gt:.4g}",
     "greater_than_equal": "at least {ge:.4g}",

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, StrictFloat, StrictInt
 
 from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
-from coupling.case.part import PartCase
+from coupling.case.part import UNUSED, NamedPart, PartCase
 from coupling.case.plates import AnyPlate
 from coupling.case.table import Contradictions, Table
 from coupling.case.values import Gravity, PositiveTime
@@ -54,9 +54,10 @@ class RunCase(Table):
             yield "after_detachment", message
 
 
-def _actuators_or(schema: dict[str, Any]) -> None:
-    """Has a JSON schema ask for what a case with that plate needs: actuators, a lattice or neither."""
-    schema["required"].remove("actuators")
+def _alternatives(schema: dict[str, Any]) -> None:
+    """Has a JSON schema ask for one part or many, and for actuators, a lattice or neither, as that plate needs it."""
+    schema["required"] = [key for key in schema["required"] if key not in ("actuators", "part")]
+    schema["oneOf"] = [{"required": ["part"]}, {"required": ["parts"]}]
     platform = {"properties": {"shape": {"const": "platform"}}, "required": ["shape"]}
     schema["anyOf"] = [
         {"required": ["actuators"]},
@@ -68,7 +69,7 @@ def _actuators_or(schema: dict[str, Any]) -> None:
 class CaseTables(Table):
     """All tables of a case file; a platform has no actuators."""
 
-    model_config = ConfigDict(json_schema_extra=_actuators_or)
+    model_config = ConfigDict(json_schema_extra=_alternatives)
 
     whole_file: ClassVar[bool] = True
 
@@ -80,7 +81,18 @@ class CaseTables(Table):
     """Many actuators in rows and columns, which come after those that are given one by one."""
     part: PartCase
     """The part, which lies on the surface."""
+    parts: tuple[NamedPart, ...] = ()
+    """Many parts in place of one, with the fields of [part]."""
     friction: AnyFriction
     """The friction between part and surface."""
     run: RunCase
     """How long the part is followed, and how exactly."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if (parts := given.get("parts")) and given["part"] is not UNUSED:
+            yield "parts", "must not be given with [part]; it may be one of them"
+        names = [part.named(number).casefold() for number, part in enumerate(parts or ())]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                yield ("parts", number, "name"), f'must differ from those before it; got "{name}" again'

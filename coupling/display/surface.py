@@ -36,10 +36,10 @@ class DisplaySurface(NamedTuple):
     stretching: Stretching | None = None  # None: linear theory, or a platform
 
 
-def display_surface(scene: Scene, trajectory: Trajectory) -> DisplaySurface:
-    """The whole plate, or the square of a platform around a path."""
+def display_surface(scene: Scene, *trajectories: Trajectory) -> DisplaySurface:
+    """The whole plate, or the square of a platform around the paths."""
     if isinstance(scene, PlatformScene):
-        return _square(scene, trajectory)
+        return _square(scene, np.concatenate([one.position for one in trajectories]))
     points, triangles = display_mesh(scene.plate.mesh, scene.shapes.points)
     shapes = scene.moving_shapes
     stretching = None if scene.stretch is None else Stretching(scene, scene.stretch, points)
@@ -91,8 +91,8 @@ def _curvatures(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], Fl
     return lambda heights: np.asarray((laplacians() @ heights.T).T)
 
 
-def _square(scene: PlatformScene, trajectory: Trajectory) -> DisplaySurface:
-    low, high = trajectory.position.min(axis=0), trajectory.position.max(axis=0)
+def _square(scene: PlatformScene, places: FloatArray) -> DisplaySurface:
+    low, high = places.min(axis=0), places.max(axis=0)
     half = (0.5 + MARGIN) * float((high - low).max()) or scene.surface.size / 2
     corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3]])

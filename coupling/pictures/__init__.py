@@ -10,6 +10,7 @@ from coupling.pictures.figure import (
     put_title,
     save_picture,
 )
+from coupling.pictures.parts import PARTS_COLOURS, draw_parts
 from coupling.pictures.plate import (
     PITCHES,
     PlateView,
@@ -21,6 +22,6 @@ from coupling.pictures.plate import (
     is_visible,
     path_window,
 )
-from coupling.pictures.portrait import Portrait, chosen_drives, portrait_of
+from coupling.pictures.portrait import Portrait, chosen_drives, portrait_of, samples_of
 from coupling.pictures.run import draw_run, draw_way
 from coupling.pictures.time import MARKS, all_curves_of, curves_of, draw_events, draw_over_time

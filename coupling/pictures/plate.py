@@ -180,13 +180,8 @@ def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> Artist:
     return axes.add_patch(Rectangle(tuple(corner), *sides, **look, label="frame of the close-up"))
 
 
-def draw_maps(
-    axes: Sequence[Axes], view: PlateView, rows: Rows, line: FloatArray, window: FloatArray | None
-) -> tuple[list[Artist], Unit]:
-    """Draw a plate and the path through points (n, 2) [m] over it, or in a window (2, 2) [m] in the second axes.
-
-    Returns keys and the unit of the last axes.
-    """
+def draw_maps(axes: Sequence[Axes], view: PlateView, window: FloatArray | None) -> tuple[list[Artist], Unit]:
+    """Draw a plate, and what is in a window (2, 2) [m] into the second axes; return keys and the last axes' unit."""
     unit = unit_for(view.outline.box, "m")
     keys = draw_plate(axes[0], view, unit, side="right" if window is None else "left")
     if window is not None:
@@ -196,7 +191,7 @@ def draw_maps(
         keys += draw_plate(axes[1], view, unit, window)
         axes[1].yaxis.tick_right()
         axes[1].yaxis.set_label_position("right")
-    return draw_path(axes[-1], rows, line, unit, view.outline.box) + keys, unit
+    return keys, unit
 
 
 def _join(axes: Sequence[Axes], unit: Unit, window: FloatArray) -> None:

@@ -18,13 +18,14 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
+from coupling.case import Case
 from coupling.margins import LOSSES
 from coupling.pictures.figure import map_axes, put_keys, put_title, save_picture
 from coupling.pictures.plate import AXES_WIDTH, draw_maps, draw_path, draw_plate, path_window
 from coupling.pictures.portrait import Portrait, portrait_of
 from coupling.pictures.time import MARKS, Curves, Span, curves_of, draw_events, draw_over_time
 from coupling.result import Result
-from particle import HALO, shade_keys
+from particle import HALO, Samples, Trajectory, shade_keys
 
 FloatArray = NDArray[np.float64]
 
@@ -37,9 +38,9 @@ OUTLINES = 7  # of a part with a face, from start to end
 MANY, SHOWN = 30.0, 6.0  # cycles: a longer run is drawn twice over time, whole and around the decisive moment
 
 
-def draw_run(result: Result, path: Path) -> Path:
+def draw_run(run: object, path: Path) -> Path:
     """Draw a run into a PNG file; return its path."""
-    return save_picture(draw_result(result), path)
+    return save_picture(draw(run), path)
 
 
 @draw.register(Result)
@@ -58,7 +59,7 @@ def draw_result(result: Result, axes: Axes | None = None) -> Figure:
 def compose(figure: Figure, portrait: Portrait) -> None:
     """Draw the run into an empty figure: maps, and below them what happens over time."""
     box, rows, line, plate = portrait.box, portrait.rows, portrait.samples.position, portrait.plate
-    outlines = _outlines(portrait)
+    outlines = outlines_of(portrait.case, portrait.samples, rows)
     shown = np.concatenate([line, outlines.reshape(-1, 2)])
     window = path_window(shown, box, plate.actuators) if plate else None
     curves = curves_of(portrait)
@@ -72,8 +73,9 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     axes = [figure.add_subplot(maps[k]) for k in range(len(columns))]
     if plate:
         axes[0].set_title(f"The plate at {portrait.when}, {portrait.most}", fontsize=10)
-        keys, unit = draw_maps(axes, plate, rows, line, window)
-        _draw_outlines(axes[-1], outlines, unit)
+        keys, unit = draw_maps(axes, plate, window)
+        keys = draw_path(axes[-1], rows, line, unit, box) + keys
+        draw_outlines(axes[-1], outlines, unit)
     else:
         unit = unit_for(box, "m")
         keys = draw_way(axes[0], portrait, unit)
@@ -137,22 +139,22 @@ def _align_labels(panels: Sequence[Axes]) -> None:
         panel.yaxis.set_label_coords(0, 0.5, panel.transAxes + left)
 
 
-def _outlines(portrait: Portrait) -> FloatArray:
+def outlines_of(case: Case, line: Samples, rows: Samples | Trajectory) -> FloatArray:
     """The outlines (OUTLINES, k, 2) [m] of a part's face from start to end; of a point none, (0, 0, 2)."""
-    face, line, heading = portrait.case.part.face, portrait.samples, portrait.rows.heading
+    face, heading = case.part.face, rows.heading
     if face is None or heading is None:
         return np.empty((0, 0, 2))
     times = np.linspace(line.time[0], line.time[-1], OUTLINES)
     places = np.column_stack([np.interp(times, line.time, values) for values in line.position.T])
-    return face.outline(places, np.interp(times, portrait.rows.time, heading))
+    return face.outline(places, np.interp(times, rows.time, heading))
 
 
-def _draw_outlines(axes: Axes, outlines: FloatArray, unit: Unit) -> None:
+def draw_outlines(axes: Axes, outlines: FloatArray, unit: Unit, colour: str = "black") -> None:
     """Draw the first and the last outline, and fainter those in between."""
     for k, corners in enumerate(outlines * unit.per_si):
         ends = k in (0, len(outlines) - 1)
         closed = np.concatenate([corners, corners[:1]])
-        axes.plot(*closed.T, color="black", linewidth=1.2 if ends else 0.6, alpha=1.0 if ends else 0.4, zorder=2.8)
+        axes.plot(*closed.T, color=colour, linewidth=1.2 if ends else 0.6, alpha=1.0 if ends else 0.4, zorder=2.8)
 
 
 def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:
@@ -190,5 +192,5 @@ def draw_way(axes: Axes, portrait: Portrait, unit: Unit, width: float = AXES_WID
         axes.set_xlim(left, right)
         axes.set_ylim(bottom, top)
         axes.grid(alpha=0.3)
-    _draw_outlines(axes, _outlines(portrait), unit)
+    draw_outlines(axes, outlines_of(portrait.case, portrait.samples, portrait.rows), unit)
     return draw_path(axes, portrait.rows, line, unit, portrait.box) + keys

@@ -25,10 +25,11 @@ GRAMS: Final = 1e3  # in a kg
 HELD: Final = {"clamped": "clamped", "simply-supported": "simply supported", "free": "free"}
 
 
-def device(case: Case) -> str:
-    """What a case is, for a title: the plate's outline, size, thickness and stiffness, its actuators, the part."""
+def device(case: Case, parts: int = 1) -> str:
+    """What a case is, for a title: the plate's outline, size, thickness and stiffness, its actuators, part or parts."""
     part = f"a part of {quantity_text(GRAMS * case.part.mass, 'g')}"
     part += "" if case.part.size is None else f", {quantity_text(case.part.size, 'm')} wide"
+    part = part if parts == 1 else f"{parts} parts"
     if isinstance(case.plate, PlatformCase):
         return f"A flat, rigid platform, {_moved(case.plate)}, under {part}"
     return f"{_plate(case.plate)}, pushed from below by {count(len(case.actuators), 'actuator')} to move {part}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from common import Unit, count, percent, quantity, quantity_text
@@ -31,6 +31,14 @@ def lines(summary: Summary, verbose: bool = False) -> list[tuple[str, str]]:
     """Rows (label, text) to print; verbose: with how it was computed."""
     rows = _outcome(summary) + margin_lines(summary) + _trust(summary)
     return rows + (details(summary) if verbose else [])
+
+
+def lines_of_parts(summaries: Mapping[str, Summary], verbose: bool = False) -> list[tuple[str, str]]:
+    """Rows (label, text) to print of many parts by their names; verbose: with all that `lines` has of each."""
+    rows: list[tuple[str, str]] = []
+    for name, summary in summaries.items():
+        rows += [("part", name), *(lines(summary, True) if verbose else [*_outcome(summary), *_trust(summary)[:1]])]
+    return rows if verbose else rows + [("plate", text) for _, text in _trust(summary)[1:]]
 
 
 def trust(summary: Summary) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from common import count, percent, quantity
 from coupling.case import INERTIA, VON_KARMAN
@@ -40,6 +40,13 @@ def about(share: float) -> str:
 def by_theory(s: PlateSummary) -> str:
     """By which theory a strain is found, where another theory would find another."""
     return " by linear theory" if s.theory == "linear" else ""
+
+
+def warnings_of_parts(texts: Mapping[str, Sequence[str]]) -> list[str]:
+    """The warnings of many parts by their names: each once, with the name of its part unless all have it."""
+    found = dict.fromkeys(text for some in texts.values() for text in some)
+    having = {text: [name for name, some in texts.items() if text in some] for text in found}
+    return [text if len(of) == len(texts) else f"{', '.join(of)}: {text}" for text, of in having.items()]
 
 
 def _of_numerics(s: Summary) -> Iterator[str]:

@@ -8,4 +8,5 @@ from .saved import (
     is_run as is_run,
     name_of as name_of,
     read_run as read_run,
+    read_runs as read_runs,
 )

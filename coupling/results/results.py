@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,16 +13,17 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.display import DisplaySurface, moving_heights, onto_surface
+from coupling.display import DisplaySurface, display_surface, frame_times, moving_heights, onto_surface
 from coupling.environment import versions
 from coupling.files import check_room
-from coupling.margins import MarginCurves, event_actuators
+from coupling.margins import event_actuators
 from coupling.part import build_friction
 from coupling.progress import ProgressCallback, no_progress
 from coupling.result import Result
 from coupling.results.case_record import CaseRecord
 from coupling.results.csv_file import ROUGH, VECTORS, check_csv, is_trajectory, write_csv
-from coupling.results.vtkhdf import part_file, plate_file
+from coupling.results.saved import part_names
+from coupling.results.vtkhdf import NONE, Metadata, part_file, plate_file
 from coupling.surface import check_surface, is_surface, write_surface
 from particle import KogutEtsion, Samples, Trajectory
 
@@ -73,63 +76,97 @@ class Output:
 
 
 def write_results(
-    result: Result, record: CaseRecord, output: Output, tell: ProgressCallback = no_progress
+    name: str,
+    results: Mapping[str, tuple[Result, CaseRecord]],
+    output: Output,
+    tell: ProgressCallback = no_progress,
+    of_all: Metadata = NONE,
 ) -> tuple[list[Path], list[Path]]:
-    """Write NAME.plate.vtkhdf and NAME.part.vtkhdf, and what else is wanted but a picture; return the paths of both.
+    """Write NAME.plate.vtkhdf, a .part.vtkhdf for each part, and what else is wanted but a picture; return both paths.
 
     The folder is made if need be. What a run of an older case left there goes.
 
-    record: of the case, taken before the work: later its files may be others.
-    tell: gets how many time steps are written, and of how many.
+    results: of parts over one surface by the names of their files, NAME of one part and NAME.PART of many; with the
+        records of their cases, taken before the work: later its files may be others.
+    tell: gets how many time steps are written, and of how many.  of_all: further attributes of the plate's file.
     """
-    case, scene, trajectory, folder = result.case, result.scene, result.trajectory, output.folder
+    folder, (first, record) = output.folder, next(iter(results.values()))
     folder.mkdir(parents=True, exist_ok=True)
-    times, ground, friction = result.frames, result.ground, build_friction(case)
+    older = _older(folder, name)
+    scene, paths = first.scene, [result.trajectory for result, _ in results.values()]
+    ends = [float(path.time[-1]) for path in paths]
+    times, ground = (
+        np.union1d(frame_times(first.case, scene, max(ends)), ends),
+        (display_surface(scene, *paths) if scene.shapes is None else first.ground),
+    )
     heights, speeds = moving_heights(scene, times), moving_heights(scene, times, 1)
-    metadata: dict[str, str | int] = {
-        "run": uuid4().hex,  # the same in both files, which so find each other
-        "case": case.source or record.text,
-        "summary": json.dumps(result.summary.as_dict()),
+    metadata: Metadata = {
+        "run": uuid4().hex,  # the same in all files, which so find each other
+        "case": first.case.source or record.text,
+        "summary": json.dumps(first.summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
         "versions": json.dumps(versions()),
-        "actuators": len(case.actuators),
+        "actuators": len(first.case.actuators),
     }
+    written = {of_part: _part_steps(result, times, output.forces) for of_part, (result, _) in results.items()}
+    arrays = {of_part: _arrays(result, record) for of_part, (result, record) in results.items()}
+    step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
+    needed = len(times) * sum(values.nbytes for values in step.values())
+    for of_part, (position, _) in written.items():
+        needed += len(position) * PART_STEP * position[0].size // 3
+        needed += sum(values.nbytes for values in arrays[of_part]["rows"].values())
+    check_room(folder, needed)
+    with ExitStack() as files:
+        plate = files.enter_context(plate_file(folder, name, ground.points, ground.triangles, {**metadata, **of_all}))
+        parts = {}
+        for of_part, (result, _) in results.items():
+            own = {**metadata, "summary": json.dumps(result.summary.as_dict())}
+            corners = written[of_part][0][0].size // 3 - 1
+            parts[of_part] = files.enter_context(part_file(folder, of_part, own, corners))
+            for group, members in arrays[of_part].items():
+                parts[of_part].add_arrays(group, members)
+        for start in range(0, len(times), AT_ONCE):
+            tell(start, len(times))
+            some = slice(start, start + AT_ONCE)
+            plate.append(times[some], **_fields(ground, heights[some], speeds[some], len(scene.lifts), times[some]))
+            for of_part, (position, fields) in written.items():
+                columns = {key: values[some] for key, values in fields.items()}
+                parts[of_part].append(times[some][: len(position[some])], position[some], **columns)
+    _clear(folder, {name, *older, *results}, [of_part for of_part in older if of_part not in results])
+    further = []
+    if output.csv:
+        for of_part, (result, _) in results.items():
+            path, at = folder / f"{of_part}.csv", times[: len(written[of_part][0])]
+            further.append(write_csv(result.trajectory, path, at, output.forces, _rough(result)))
+    if output.surface:
+        further.append(write_surface(scene.surface, folder / f"{name}.surface.h5"))
+    return [folder / f"{name}.plate.vtkhdf", *(folder / f"{of_part}.part.vtkhdf" for of_part in results)], further
+
+
+def _rough(result: Result) -> KogutEtsion | None:
+    """The friction law of a result where that is a rough contact."""
+    friction = build_friction(result.case)
+    return friction if isinstance(friction, KogutEtsion) else None
+
+
+def _part_steps(result: Result, times: FloatArray, forces: bool) -> tuple[FloatArray, dict[str, NDArray[Any]]]:
+    """Positions (k, 3) or (k, 1 + p, 3) [m] of a part, and its fields, at those of the times [s] that it lasted."""
+    trajectory, face = result.trajectory, result.case.part.face
+    times = times[times <= trajectory.time[-1]]
     samples = trajectory.at(times)
-    rough = friction if isinstance(friction, KogutEtsion) else None
-    of_part: dict[str, NDArray[Any]] = {
+    fields: dict[str, NDArray[Any]] = {
         "velocity": np.column_stack([samples.velocity, samples.vertical_velocity]),
         "state": samples.state,
         "normal_force": samples.normal_force,
         "friction_force": samples.friction_force,
-        **(_contact_fields(trajectory, times, rough) if output.forces else {}),
+        **(_contact_fields(trajectory, times, _rough(result)) if forces else {}),
     }
-    position = np.column_stack([onto_surface(scene, samples.position), samples.height])
-    if (face := case.part.face) is not None and samples.heading is not None:
-        of_part |= {name: getattr(samples, name) for name in ("heading", "spin", "pressure_margin")}
+    position = np.column_stack([onto_surface(result.scene, samples.position), samples.height])
+    if face is not None and samples.heading is not None:
+        fields |= {name: getattr(samples, name) for name in ("heading", "spin", "pressure_margin")}
         position = _with_corners(position, face.outline(position[:, :2], samples.heading), trajectory, times)
-        of_part = {name: np.repeat(values[:, None], position.shape[1], axis=1) for name, values in of_part.items()}
-    arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(scene, result.loads))
-    step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
-    step_size = sum(values.nbytes for values in step.values()) + PART_STEP * position[0].size // 3
-    check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))
-    with (
-        plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
-        part_file(folder, case.name, metadata, position[0].size // 3 - 1) as part,
-    ):
-        for group, members in arrays.items():
-            part.add_arrays(group, members)
-        for first in range(0, len(times), AT_ONCE):
-            tell(first, len(times))
-            some = slice(first, first + AT_ONCE)
-            plate.append(times[some], **_fields(ground, heights[some], speeds[some], len(scene.lifts), times[some]))
-            part.append(times[some], position[some], **{name: values[some] for name, values in of_part.items()})
-    _clear(folder, case.name)
-    further = []
-    if output.csv:
-        further.append(write_csv(trajectory, folder / f"{case.name}.csv", times, output.forces, rough))
-    if output.surface:
-        further.append(write_surface(scene.surface, folder / f"{case.name}.surface.h5"))
-    return [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"], further
+        fields = {name: np.repeat(values[:, None], position.shape[1], axis=1) for name, values in fields.items()}
+    return position, fields
 
 
 def _with_corners(middle: FloatArray, corners: FloatArray, trajectory: Trajectory, times: FloatArray) -> FloatArray:
@@ -165,16 +202,12 @@ def _fields(
     return fields
 
 
-def _arrays(
-    record: CaseRecord, trajectory: Trajectory, margins: MarginCurves, actuators: NDArray[np.int64]
-) -> dict[str, dict[str, NDArray]]:
-    """What the part's file holds beside its steps, by groups: the case and its files, rows, events, margins.
-
-    actuators: those that count most at each event.
-    """
+def _arrays(result: Result, record: CaseRecord) -> dict[str, dict[str, NDArray]]:
+    """What the part's file holds beside its steps, by groups: the case and its files, rows, events, margins."""
+    trajectory = result.trajectory
     events = {
         "kind": np.array([event.kind for event in trajectory.events], np.int64),
-        "actuator": actuators,
+        "actuator": event_actuators(result.scene, result.loads),  # those that count most
         "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
     }
     if trajectory.heading is not None:
@@ -186,13 +219,23 @@ def _arrays(
         "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
         "rows": {key: rows for key in Samples._fields if (rows := getattr(trajectory, key)) is not None},
         "events": events,
-        "margins": margins._asdict(),
+        "margins": result.margin_curves._asdict(),
     }
 
 
-def _clear(folder: Path, name: str) -> None:
-    """Removes what a run of an older case left beside the two files: its picture, trajectory and surface."""
-    (folder / f"{name}.png").unlink(missing_ok=True)
-    for path, is_ours in ((folder / f"{name}.csv", is_trajectory), (folder / f"{name}.surface.h5", is_surface)):
-        if path.is_file() and is_ours(path):
-            path.unlink()
+def _older(folder: Path, name: str) -> list[str]:
+    """The names of the parts' files of an older run of this name."""
+    with suppress(ValueError):  # there is none, or what is left of it
+        return part_names(folder / f"{name}.plate.vtkhdf")
+    return []
+
+
+def _clear(folder: Path, names: Iterable[str], gone: Iterable[str]) -> None:
+    """Removes what a run of an older case left beside its files: pictures, trajectories, surface, and parts."""
+    for name in names:
+        (folder / f"{name}.png").unlink(missing_ok=True)
+        for path, is_ours in ((folder / f"{name}.csv", is_trajectory), (folder / f"{name}.surface.h5", is_surface)):
+            if path.is_file() and is_ours(path):
+                path.unlink()
+    for name in gone:
+        (folder / f"{name}.part.vtkhdf").unlink(missing_ok=True)

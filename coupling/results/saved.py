@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from common import DEADLY, check_hdf5, survives
 from coupling.case import Case
 from coupling.margins import LOSSES, MarginCurves
+from coupling.parts import Overlap
 from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import (
     ENDINGS,
@@ -52,7 +54,10 @@ LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE,
 
 @dataclass(frozen=True, eq=False)
 class SavedRun:
-    """A run as its two files hold it, finished or as far as it was written; the k steps are those that both have."""
+    """A run as its two files hold it, finished or as far as it was written; the k steps are those that both have.
+
+    Of many parts it is that of one, over the surface of all.
+    """
 
     name: str  # of the files
     complete: bool  # whether they were written to the end of the run
@@ -77,6 +82,7 @@ class SavedRun:
     plate_fields: tuple[str, ...]
     plate_path: Path = field(repr=False)
     part_path: Path = field(repr=False)
+    overlaps: tuple[Overlap, ...] = field(default=(), repr=False)  # of many parts, all first ones
 
     @cached_property
     def case(self) -> Case:
@@ -156,7 +162,8 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
     Parameters
     ----------
     path : path
-        Either of the two files, finished or partial, or FOLDER/NAME without the endings.
+        Either of the two files, finished or partial, or FOLDER/NAME without the endings; of one of many parts
+        FOLDER/NAME.PART.
 
     Returns
     -------
@@ -185,11 +192,33 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
             return run
 
 
+def read_runs(path: str | os.PathLike[str]) -> list[SavedRun]:
+    """The runs of all parts, by their file or FOLDER/NAME, or the one that `read_run` reads; raises likewise."""
+    (name, kind, _), path = split(Path(path)), Path(path)
+    plates = [path.with_name(f"{name}{part}.plate{SUFFIX}") for part in ("", PARTIAL)] if kind is None else [path]
+    plate = next((file for file in plates if kind != "part" and file.is_file()), None)
+    parts = [] if plate is None else part_names(plate)
+    return [read_run(path.with_name(part)) for part in parts] if len(parts) > 1 else [read_run(path)]
+
+
+def part_names(plate: Path) -> list[str]:
+    """The names of the parts' files of a run, by its plate's file; raises ValueError where that is none."""
+    _run(plate, "plate")
+    with opened(plate) as file, readable(plate, plate):
+        name, parts = split(plate)[0], json.loads(file["active_surface"].attrs.get("parts", "[]"))
+        if wrong := [part for part in parts if not re.fullmatch(r"[\w-]+", part)]:
+            raise ValueError(f"it has a part with the name {wrong[0]!r}")
+        return [f"{name}.{part}" for part in parts] or [name]
+
+
 def _surface(plate: h5py.File) -> dict[str, Any]:
     """What the plate's file holds beside its steps; raises ValueError where that does not fit together."""
     points, corners = (np.asarray(plate[f"VTKHDF/{name}"][()]) for name in ("Points", "Connectivity"))
     triangles = checked_cells(points, corners)
-    return {"points": points[:, :2], "triangles": triangles, "plate_fields": tuple(plate["VTKHDF/PointData"])}
+    found = json.loads(plate["active_surface"].attrs["summary"]).get("overlaps", ())
+    overlaps = tuple(Overlap(tuple(one["parts"]), float(one["time"])) for one in found)
+    fields = tuple(plate["VTKHDF/PointData"])
+    return {"points": points[:, :2], "triangles": triangles, "plate_fields": fields, "overlaps": overlaps}
 
 
 def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: int) -> SavedRun:
@@ -203,7 +232,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     of_face: dict[str, Any] = {name: fields[name][: k * step : step] if name in fields else None for name in OF_FACE}
     end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())
     return SavedRun(
-        name=split(paths["plate"])[0],
+        name=split(paths["part"])[0],
         complete=renamed and bool(time[-1] >= end),
         **texts,
         time=time,
@@ -248,9 +277,15 @@ def _pair(path: Path) -> dict[str, Path]:
     for one in KINDS:
         both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
         found[one] = [file for file in both if file.is_file()]
+    if found["part"] and kind != "plate":  # it may share its plate with other parts
+        shared = [path.with_name(f"{name.rpartition('.')[0]}{part}.plate{SUFFIX}") for part in ("", PARTIAL)]
+        found["plate"] += [file for file in shared if file.is_file()]
     if missing := [one for one in KINDS if not found[one]]:
         if kind is None and not any(found.values()) and (other := described(path)):
             raise ValueError(f"{EXPECTED}; got {path}, {other}")
+        if found["plate"] and len(parts := part_names(found["plate"][0])) > 1:
+            one_of = " or ".join(str(path.with_name(part)) for part in parts)
+            raise ValueError(f"{EXPECTED} of one part; got {path}, of {len(parts)}: name {one_of}")
         one = kind if kind in missing else missing[0]
         file = path if one == kind else path.with_name(f"{name}.{one}{SUFFIX}")
         beside = meant(path.with_name(name)) if kind in (None, one) else ", the other file of this run"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from coupling import read_case, report, run_case
+from coupling import read_case, read_parts, report, run_case
 from coupling.display import onto_plate
 from particle import State
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.compiled
 
 @pytest.fixture(scope="module", params=EXAMPLES)
 def result(request, tmp_path_factory):
-    return run_case(read_case(request.param), output=tmp_path_factory.mktemp("results"))
+    return run_case(read_parts(request.param)[0], output=tmp_path_factory.mktemp("results"))
 
 
 def test_writes_one_file_of_each_kind_and_nothing_partial(result):

@@ -12,9 +12,10 @@ import click
 
 from active_surface.cli.command import Answer, command, option
 from active_surface.cli.options import RESULTS, Output, Overwrite, stages
-from active_surface.cli.refusal import kind_of, read
+from active_surface.cli.refusal import kind_of, read, read_all
 
 if TYPE_CHECKING:
+    from coupling import Result
     from coupling.case import Case
 
 
@@ -28,14 +29,28 @@ def run(
     save_surface: Annotated[bool, option("Also write the moving surface to NAME.surface.h5.")] = False,
 ) -> Answer:
     """Run CASE and write its results."""
-    parsed = read(case)
-    from coupling import case_warnings, limit_warnings, report, run_case, stage_count
+    first, *others = parsed = read_all(case)
+    from coupling import report, run_case, run_parts, stage_count
 
-    with stages(stage_count(parsed)) as bar:
-        result = run_case(parsed, output, bar, csv, save_surface, forces)
-    summary = result.summary
-    warnings = report.warnings(summary) + case_warnings(parsed) + limit_warnings(parsed, result.shapes)
-    return Answer(summary.as_dict(), report.lines(summary, verbose), warnings, result.files)
+    with stages(stage_count(first)) as bar:
+        if others:
+            found = run_parts(parsed, case.stem, output, bar, csv, save_surface, forces)
+        else:
+            result = run_case(first, output, bar, csv, save_surface, forces)
+    if not others:
+        return Answer(
+            result.summary.as_dict(), report.lines(result.summary, verbose), _warnings_of(result), result.files
+        )
+    rows = report.lines_of_parts({name: result.summary for name, result in found.results.items()}, verbose)
+    warnings = report.warnings_of_parts({name: _warnings_of(result) for name, result in found.results.items()})
+    return Answer(found.as_dict(), rows, [overlap.sentence for overlap in found.overlaps] + warnings, found.files)
+
+
+def _warnings_of(result: Result) -> list[str]:
+    from coupling import case_warnings, limit_warnings, report
+
+    case = result.case
+    return report.warnings(result.summary) + case_warnings(case) + limit_warnings(case, result.shapes)
 
 
 @command
@@ -59,10 +74,16 @@ def check(file: Path) -> Answer:
         figures = {"actuators": actuators, "target": target, "heading": heading}
         text = f"an aim of {case.name}, {count(actuators, 'actuator')}"
     else:
-        case = read(file)
-        warnings, actuators = _warnings(case), len(case.actuators)
-        figures = {"actuators": actuators, "duration": case.run.duration}
+        cases = read_all(file)
+        case, actuators = cases[0], len(cases[0].actuators)
+        warnings = _warnings(case)
+        if len(cases) > 1:
+            from coupling import report  # loads numerics
+
+            warnings = report.warnings_of_parts({one.name: _warnings(one) for one in cases})
+        figures = {"actuators": actuators, "duration": case.run.duration, "parts": len(cases)}
         text = f"{count(actuators, 'actuator') if actuators else 'a platform'}, {case.run.duration * 1e3:g} ms"
+        text += f", {count(len(cases), 'part')}" * (len(cases) > 1)
     figures = {"file": str(file), "mistakes": [], **figures}
     return Answer(figures, [(f"{file}: fine; {text}", "")], warnings)
 

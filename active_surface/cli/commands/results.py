@@ -32,7 +32,7 @@ def animate(
 ) -> Answer:
     """Make a film of RESULT: the plate's heights, the part and its trail.
 
-    RESULT is one of the two files of a run, finished or partial, or FOLDER/NAME.
+    RESULT is a file of a run, finished or partial, or FOLDER/NAME.
     """
     from active_surface.views.film import animate as make
 
@@ -156,7 +156,7 @@ def view(
 ) -> Answer:
     """Write RESULT as one HTML page that works offline.
 
-    RESULT is one of the two files of a run, finished or partial, or the netCDF file of a sweep. A case or study file
+    RESULT is a file of a run, finished or partial, FOLDER/NAME, or the netCDF file of a sweep. A case or study file
     stands for its results in `results/` or beside it.
     """
     from active_surface.views import result_of
@@ -181,15 +181,15 @@ def view(
     else:
         from active_surface.views import is_of
         from active_surface.views.pages import PARTIAL, write_run_page
-        from coupling.results import read_run
+        from coupling.results import read_runs
 
-        run = read_run(found.path)
-        if result.suffix == ".toml" and not is_of(run, result):
+        runs = read_runs(found.path)
+        if result.suffix == ".toml" and not all(is_of(run, result) for run in runs):
             warnings.append(f"{found.path} is of another case than {result} is now: `active-surface run {result}`")
-        if not run.complete:
+        if not all(run.complete for run in runs):
             warnings.append(PARTIAL)
         page.parent.mkdir(parents=True, exist_ok=True)
-        write_run_page(run, page)
+        write_run_page(runs[0], page, runs[1:])
     if opened:
         click.launch(page.absolute().as_uri())
     size = page.stat().st_size

@@ -6,7 +6,7 @@ run -> pace -> scene -> layout -> moments, each painted and captioned -> film fi
 from __future__ import annotations
 
 import math
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import chain
@@ -24,7 +24,7 @@ from active_surface.views.film.painter import Painter
 from active_surface.views.film.scene import scene_of
 from coupling import ProgressCallback, build_drives, check_folder, no_progress
 from coupling.case import Case
-from coupling.results import SavedRun, read_run
+from coupling.results import SavedRun, name_of, read_runs
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
@@ -65,7 +65,7 @@ def animate(
     Parameters
     ----------
     result : path or SavedRun
-        One of the run's files, FOLDER/NAME, or what `read_run` returns.
+        One of the run's files, FOLDER/NAME, also of many parts, or what `read_run` returns.
     output : path, optional
         File of the film, or folder of its pictures; by default NAME.mp4 beside the result.
     kind : str, optional
@@ -102,12 +102,12 @@ def animate(
     view = camera_of(camera)
     for name, value in (("exaggeration", exaggeration), ("fps", rate), ("slow-motion", slow_motion)):
         _check_positive(name, value)
-    run = _run_of(result)
-    path = _output(run, output, form)
+    run, *others = _runs_of(result)
+    path = _output(run, name_of(run.plate_path) if others else run.name, output, form)
     check_folder(path.parent)
     pace = pace_of(run.time, rate, slow_motion)
     check_film(path, form, pixels, rate, len(pace.times))
-    layout = _layout(run, view, pixels, exaggeration)
+    layout = _layout([run, *others], view, pixels, exaggeration)
     images = _images(layout, pace.times, pace)
     first = next(images)  # before there is a file: there may be no OpenGL
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ def animate(
             add(image)
             tell(k + 1, len(pace.times))
     warnings = warnings_of(pace, run.time, _cycle(run.case))
-    if not run.complete:
+    if not all(one.complete for one in (run, *others)):
         warnings.append("The result is partial: its run was interrupted or has not ended. The film ends where it does.")
     return Animation(path, len(pace.times), rate, pace.slow_motion, layout.exaggeration, tuple(warnings))
 
@@ -132,35 +132,39 @@ def still(
     """The picture (height, width, 3) of a film at a time [s]; otherwise as `animate`."""
     view, pixels = camera_of(camera), size_of(size)
     _check_positive("exaggeration", exaggeration)
-    run = _run_of(result)
+    run, *others = _runs_of(result)
     if not run.time[0] <= time <= run.time[-1]:
         raise ValueError(f"Input time must be from {run.time[0]:g} to {run.time[-1]:g} s; got {time!r}")
-    with closing(_images(_layout(run, view, pixels, exaggeration), np.array([time]), None)) as images:
+    with closing(_images(_layout([run, *others], view, pixels, exaggeration), np.array([time]), None)) as images:
         return next(images)
 
 
-def _layout(run: SavedRun, view: tuple[float, float], size: tuple[int, int], exaggeration: float | None) -> Layout:
-    scene = scene_of(run)
+def _layout(
+    runs: Sequence[SavedRun], view: tuple[float, float], size: tuple[int, int], exaggeration: float | None
+) -> Layout:
+    scene = scene_of(runs[0], runs[1:])
     return layout_of(scene, view, size, exaggeration or scene.exaggeration)
 
 
 def _images(layout: Layout, times: FloatArray, pace: Pace | None) -> Generator[Image]:
     with closing(Painter(layout)) as painter:
         captions = Captions(layout, pace)
-        for moment in layout.scene.moments(times):
-            yield captions.picture(painter.paint(moment), moment)
+        for first, *others in zip(
+            *(scene.moments(times) for scene in (layout.scene, *layout.scene.others)), strict=True
+        ):
+            yield captions.picture(painter.paint(first, others), first)
 
 
-def _output(run: SavedRun, output: str | Path | None, form: str) -> Path:
+def _output(run: SavedRun, name: str, output: str | Path | None, form: str) -> Path:
     if output is None:
-        name = f"{run.name}.frames" if form == "png" else f"{run.name}.{form}"
-        return run.plate_path.with_name(name)
+        return run.plate_path.with_name(f"{name}.frames" if form == "png" else f"{name}.{form}")
     path = Path(output)
     return path.with_suffix("") if form == "png" and path.suffix.lower() == ".png" else path
 
 
-def _run_of(result: str | Path | SavedRun) -> SavedRun:
-    return result if isinstance(result, SavedRun) else read_run(result)
+def _runs_of(result: str | Path | SavedRun) -> list[SavedRun]:
+    """The runs of all parts, those that last longest first."""
+    return [result] if isinstance(result, SavedRun) else sorted(read_runs(result), key=lambda run: -len(run.time))
 
 
 def _check_positive(name: str, value: float | None) -> None:

@@ -22,6 +22,7 @@ from active_surface.views.film.pace import Pace
 from active_surface.views.film.painter import colour_of
 from active_surface.views.film.scene import Moment
 from active_surface.views.geometry import outer_edges, round_below
+from active_surface.views.result_file import part_of
 from common import STEPS, draw_rim, quantity_text, unit_for
 from coupling.case import PlatformCase
 from coupling.pictures import MARKS
@@ -87,8 +88,10 @@ class Captions:
         return np.asarray(result)
 
     def _words(self, moment: Moment) -> str:
-        """What the part does, and while it is stuck how hard it is pulled."""
+        """What the part does, and while it is stuck how hard it is pulled; nothing of many parts."""
         run = self._scene.run
+        if self._scene.others:
+            return ""
         if moment.lost:
             return f"part {MARKS[run.loss.kind].afterwards}" if run.loss else ""
         if moment.state is State.FLIGHT:
@@ -163,22 +166,24 @@ class Captions:
             notes.append("the trail is that on the platform")
         for place, words, share, look in (
             ((0.5, 0.012), "   ·   ".join(notes), 0.97, {"ha": "center", "va": "bottom"}),
-            ((0.975, 0.972), scene.run.name, 0.6, {"ha": "right", "va": "top", "parse_math": False}),
+            ((0.975, 0.972), scene.name, 0.6, {"ha": "right", "va": "top", "parse_math": False}),
         ):
             text = self._figure.text(*place, words, fontsize=self._letter, color="#404040", **look)
             wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
             text.set_fontsize(self._letter * min(1.0, share / wide))
 
     def _draw_keys(self) -> None:
-        letter = self._letter
+        letter, scene = self._letter, self._scene
         keys: list[Artist] = []
         look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
         if len(self._scene.actuators):
             keys.append(Line2D([], [], markerfacecolor="white", label="actuator", **look))
-        if len(self._scene.trail[0]):
+        if len(scene.trail[0]) and not scene.others:
             keys.append(Line2D([], [], color=PATH_COLOUR, linewidth=letter * 0.2, label="trail"))
+        for one in (scene, *scene.others) if scene.others else ():
+            keys.append(Patch(color=one.colour, alpha=0.75, linewidth=0, label=part_of(one.run)))
         for state, (colour, name) in SHADES.items():
-            if (self._rows[1] == state).any():
+            if not scene.others and (self._rows[1] == state).any():
                 keys.append(Patch(color=colour, alpha=0.25, linewidth=0, label=name))
         if keys:
             place: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (0.985, 0.115), "borderpad": 0}
@@ -198,7 +203,7 @@ class Captions:
         begin, end = (self._scene.run.time[[0, -1]] * unit.per_si).tolist()
         axes = self._figure.add_axes(LINE, facecolor="none")
         rows, known = self._rows
-        for state, (colour, _) in SHADES.items():
+        for state, (colour, _) in SHADES.items() if not self._scene.others else ():
             parts = [(rows[first], rows[last] - rows[first]) for first, last in stretches(known == state)]
             axes.broken_barh(parts, (0, 1), color=colour, alpha=0.25, linewidth=0)
         axes.set_yticks([])

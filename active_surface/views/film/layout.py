@@ -68,7 +68,7 @@ def layout_of(scene: Scene, camera: tuple[float, float], size: tuple[int, int], 
     right = np.array([-math.sin(a), math.cos(a), 0.0])
     towards = np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)])
     layout = Layout(scene, *size, np.stack([right, np.cross(towards, right), towards]), exaggeration)
-    part = scene.run.position
+    part = np.concatenate([one.run.position for one in (scene, *scene.others)])
     top = max(scene.range[1], HIGHEST * scene.size / exaggeration)
     shifts = scene.shifts(np.linspace(0.0, scene.run.time[-1], MOMENTS))
     corners = np.stack([shifts.min(axis=0), shifts.max(axis=0)])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -11,7 +12,7 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from active_surface.arrays import FloatArray, Image
 from active_surface.views.film.layout import MAX_SIDE, Layout
-from active_surface.views.film.scene import Moment, shapes_of
+from active_surface.views.film.scene import Moment, Scene, shapes_of
 from particle import PATH_COLOUR, STICK_COLOUR, State
 
 NO_OPENGL = "Films need OpenGL, which is not here: install EGL, on Debian by `apt-get install libegl1 libgl1-mesa-dri`"
@@ -28,6 +29,18 @@ COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#3
 def colour_of(moment: Moment) -> str:
     """The colour of what the part does."""
     return LOST if moment.lost else COLOURS[moment.state]
+
+
+class _Part(NamedTuple):
+    """What is drawn of a part."""
+
+    scene: Scene
+    trail_shapes: FloatArray  # (q, r) m
+    trail: pv.PolyData
+    pole: pv.PolyData
+    ball: pv.PolyData
+    face: pv.PolyData  # empty: of a point
+    actors: list[pv.Actor]  # of ball and face
 
 
 class Painter:
@@ -80,24 +93,27 @@ class Painter:
             self._add(
                 pv.PolyData(_flat(scene.scaled(scene.actuators))), shapes, lift, color=colour, point_size=size, **dots
             )
-        trail = scene.trail[0]
-        self._trail_shapes, look = scene.shapes_at(trail), {"color": PATH_COLOUR, "line_width": 3 * line}
-        line_of = pv.lines_from_points(_flat(scene.scaled(trail))) if len(trail) else pv.PolyData()
-        self._trail = self._add(line_of, None, 3.0, lighting=False, **look)
-        pole = pv.Line()
-        self._pole = self._add(pole, None, 2.0, color="#333333", line_width=1.2 * line, lighting=False)
         self._ball_radius = 11 * max(layout.pixel, 0.5)
-        ball: dict[str, Any] = {"style": "points", "render_points_as_spheres": True, "lighting": True, **BALL}
-        self._ball = self._add(pv.PolyData(np.zeros((1, 3))), None, 5.4, point_size=2 * self._ball_radius, **ball)
-        self._ball_actor = self._actors[-1][0]
-        self._face = pv.PolyData()
+        self._parts = [self._add_part(one, line) for one in (scene, *scene.others)]
+
+    def _add_part(self, scene: Scene, line: float) -> _Part:
+        """Add a part with its trail; line: the width of a line [pixels]."""
+        trail, look = scene.trail[0], {"color": scene.colour or PATH_COLOUR, "line_width": 3 * line}
+        line_of = pv.lines_from_points(_flat(scene.scaled(trail))) if len(trail) else pv.PolyData()
+        drawn = self._add(line_of, None, 3.0, lighting=False, **look)
+        pole = self._add(pv.Line(), None, 2.0, color="#333333", line_width=1.2 * line, lighting=False)
+        points: dict[str, Any] = {"style": "points", "render_points_as_spheres": True, "lighting": True, **BALL}
+        ball = self._add(pv.PolyData(np.zeros((1, 3))), None, 5.4, point_size=2 * self._ball_radius, **points)
+        actors = [ball_actor := self._actors[-1][0]]
+        corners = pv.PolyData()
         if (face := scene.face) is not None:
             count = len(face.outline((0.0, 0.0), 0.0))
             corners = pv.PolyData(np.zeros((count, 3)), faces=[count, *range(count)])
             look = {"show_edges": True, "edge_color": "black", "line_width": 1.5 * line, "lighting": False}
-            self._face = self._add(corners, None, 4.5, opacity=FACE, **look)
-            self._face_actor = self._actors[-1][0]
-            self._ball_actor.visibility = face.reach * layout.scale < self._ball_radius * scene.size
+            corners = self._add(corners, None, 4.5, opacity=FACE, **look)
+            actors.append(self._actors[-1][0])
+            ball_actor.visibility = face.reach * self._layout.scale < self._ball_radius * scene.size
+        return _Part(scene, scene.shapes_at(trail), drawn, pole, ball, corners, actors)
 
     def _add(self, mesh: pv.PolyData, shapes: FloatArray | None, lift: float, **look: Any) -> pv.PolyData:
         """Add a mesh, which its shapes move if it has any; sizes are in pixels of the picture."""
@@ -109,28 +125,14 @@ class Painter:
                 self._movers.append((mesh, shapes))
         return mesh
 
-    def paint(self, moment: Moment) -> Image:
-        """The picture (height, width, 3) of the layout's box at a moment."""
-        layout, places = self._layout, self._layout.places
-        per_metre = layout.exaggeration / self._scene.size
+    def paint(self, moment: Moment, others: Sequence[Moment] = ()) -> Image:
+        """The picture (height, width, 3) of the layout's box at a moment; others: of further parts."""
+        per_metre = self._layout.exaggeration / self._scene.size
         for mesh, shapes in self._movers:
             mesh.points[:, 2] = per_metre * (shapes @ moment.amplitudes)
         self._surface["colours"][:] = self._colours(moment.amplitudes)
-        trail, then = self._scene.trail
-        here, below = moment.part[None, :2], np.array([moment.under])
-        if len(trail):
-            passed = then <= moment.time
-            height = np.where(passed, self._trail_shapes @ moment.amplitudes, moment.under)
-            self._trail.points = places(np.where(passed[:, None], trail, here), height)
-        self._pole.points = places(here.repeat(2, axis=0), moment.under + np.array([0.0, moment.flight]))
-        up = self._ball_radius / layout.scale
-        self._ball.points = places(here, np.maximum(below, moment.part[2])) + [0.0, 0.0, up]
-        self._ball_actor.prop.color = colour_of(moment)
-        if (face := self._scene.face) is not None:
-            corners = face.outline(moment.part[:2], moment.heading)
-            heights = self._scene.shapes_at(corners) @ moment.amplitudes
-            self._face.points = places(corners, heights)
-            self._face_actor.prop.color = colour_of(moment)
+        for part, its in zip(self._parts, (moment, *others), strict=True):
+            self._move(part, its, moment.amplitudes)
         for actor, place in self._actors:
             actor.position = place + np.append(moment.shift, 0.0) / self._scene.size
         window = self._plotter.render_window
@@ -139,6 +141,23 @@ class Painter:
         window.GetPixelData(0, 0, wide - 1, tall - 1, 0, pixels, 0)  # a screenshot of pyvista copies them thrice
         image = Pictures.frombuffer("RGB", (wide, tall), pv.convert_array(pixels), "raw", "RGB", 0, -1)
         return np.asarray(image.reduce(self._finer))
+
+    def _move(self, drawn: _Part, moment: Moment, amplitudes: FloatArray) -> None:
+        """Put a part and its trail to where they are at a moment."""
+        places, (trail, then) = self._layout.places, drawn.scene.trail
+        here, below = moment.part[None, :2], np.array([moment.under])
+        if len(trail):
+            passed = then <= moment.time
+            height = np.where(passed, drawn.trail_shapes @ amplitudes, moment.under)
+            drawn.trail.points = places(np.where(passed[:, None], trail, here), height)
+        drawn.pole.points = places(here.repeat(2, axis=0), moment.under + np.array([0.0, moment.flight]))
+        up = self._ball_radius / self._layout.scale
+        drawn.ball.points = places(here, np.maximum(below, moment.part[2])) + [0.0, 0.0, up]
+        if (face := drawn.scene.face) is not None:
+            corners = face.outline(moment.part[:2], moment.heading)
+            drawn.face.points = places(corners, drawn.scene.shapes_at(corners) @ amplitudes)
+        for actor in drawn.actors:
+            actor.prop.color = drawn.scene.colour or colour_of(moment)
 
     def _colours(self, amplitudes: FloatArray) -> Image:
         """The colours (p, 3) of the surface, lit here: light for each pixel takes software half of the time."""

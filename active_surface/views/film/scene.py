@@ -6,8 +6,10 @@ The surface is the sum of a few modes, so whatever lies on it is a mesh with a r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import cycle
 from typing import NamedTuple
 
 import numpy as np
@@ -19,8 +21,8 @@ from active_surface.views.geometry import exaggeration, round_above, spots_of
 from active_surface.views.modes import modes_of
 from coupling import silent
 from coupling.case import PlatformCase
-from coupling.pictures import PITCHES, Scale, is_visible, path_window
-from coupling.results import SavedRun
+from coupling.pictures import PARTS_COLOURS, PITCHES, Scale, is_visible, path_window
+from coupling.results import SavedRun, name_of
 from coupling.scene import platform_scene
 from fem_plate import extent, pitch
 from particle import Footprint, State
@@ -67,13 +69,21 @@ class Scene:
     window: bool  # whether the frame is only a part of the plate
     whole: pv.PolyData  # the surface in the frame and around it
     surface: pv.PolyData  # what is in the frame
+    time: FloatArray  # (k,) s, of these steps
     path: FloatArray  # (r, 2) m, all known places of the part
     path_time: FloatArray  # (r,) s
+    colour: str | None = None  # of one of many parts; None: by what the part does
+    others: tuple[Scene, ...] = ()  # the same with other parts
 
     @property
     def size(self) -> float:
         """The longer side [m] of the frame."""
         return extent(self.frame)
+
+    @property
+    def name(self) -> str:
+        """The name of the run, with its part unless all are shown."""
+        return name_of(self.run.plate_path) if self.others else self.run.name
 
     @cached_property
     def face(self) -> Footprint | None:
@@ -181,7 +191,7 @@ class Scene:
         """What there is at times (F,) [s]; between stored steps heights are linear, the part is where its rows are."""
         run, rows = self.run, self.run.rows
         amplitudes, place = (
-            _interpolated(times, *columns) for columns in ((run.time, self.amplitudes), (self.path_time, self.path))
+            _interpolated(times, *columns) for columns in ((self.time, self.amplitudes), (self.path_time, self.path))
         )
         part = np.column_stack([place, np.interp(times, run.time, run.position[:, 2])])
         under = (self.shapes_at(place) * amplitudes).sum(axis=1)
@@ -199,12 +209,14 @@ def shapes_of(mesh: pv.PolyData) -> FloatArray:
     return np.asarray(mesh["shapes"]).reshape(mesh.n_points, -1)  # VTK knows no columns where there is one
 
 
-def scene_of(run: SavedRun) -> Scene:
-    """The scene of a run: all of its surface, or a window around a path that is short beside it."""
-    path, then = _path(run)
-    face, heading = run.case.part.face, run.rows.heading
-    outlines = [] if face is None or heading is None else [face.outline(path[k], heading[k]) for k in (0, -1)]
-    frame, window = _frame(run, np.concatenate([path, *outlines]))
+def scene_of(run: SavedRun, others: Sequence[SavedRun] = ()) -> Scene:
+    """The scene of a run: all of its surface, or a window around paths that are short beside it.
+
+    others: of further parts over the same surface, which do not last longer.
+    """
+    runs, paths = (run, *others), [_path(one) for one in (run, *others)]
+    shown = [places for one, (path, _) in zip(runs, paths, strict=True) for places in (path, *_ends(one, path))]
+    frame, window = _frame(run, np.concatenate(shown))
     low, high = frame + AROUND * extent(frame) * np.array([[-1.0], [1.0]])
     inside = ((run.points >= low) & (run.points <= high)).all(axis=1)
     used, corners = np.unique(run.triangles[inside[run.triangles].any(axis=1)], return_inverse=True)
@@ -212,7 +224,18 @@ def scene_of(run: SavedRun) -> Scene:
     scaled = (np.stack([*frame, *run.points[used]]) - frame.mean(axis=0)) / extent(frame)
     whole = _refined(Triangulation(*scaled[2:].T, corners.reshape(-1, 3)), shapes)
     surface = _within(whole, scaled[:2]).triangulate() if window else whole.copy()
-    return Scene(run, amplitudes, frame, window, whole, surface, path, then)
+    ground = (amplitudes, frame, window, whole, surface, run.time)
+    colours = cycle(PARTS_COLOURS if others else [None])
+    first, *beside = (
+        Scene(one, *ground, *path, colour) for one, path, colour in zip(runs, paths, colours, strict=False)
+    )
+    return replace(first, others=tuple(beside))
+
+
+def _ends(run: SavedRun, path: FloatArray) -> list[FloatArray]:
+    """The first and the last outline (c, 2) [m] of a part with a face."""
+    face, heading = run.case.part.face, run.rows.heading
+    return [] if face is None or heading is None else [face.outline(path[k], heading[k]) for k in (0, -1)]
 
 
 def _path(run: SavedRun) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from typing import Any, Final
 
 import numpy as np
@@ -13,9 +15,10 @@ from active_surface.views.modes import modes_of
 from active_surface.views.pages.moments import MAX_EVENTS, Moments, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
+from active_surface.views.result_file import part_of
 from common import Unit, unit_for
 from coupling import report
-from coupling.pictures import MARKS, Scale, path_window
+from coupling.pictures import MARKS, PARTS_COLOURS, Scale, path_window, samples_of
 from coupling.results import SavedRun
 from fem_plate import extent
 from particle import EventKind, State, stretches
@@ -31,11 +34,12 @@ COUNTS: Final = {EventKind.SLIPS: report.PULLS, EventKind.DETACHES: report.LIFTS
 COLOURS: Final = 11  # stops of the colour scale
 
 
-def run_data(run: SavedRun) -> dict[str, Any]:
-    """What the programs of the page read."""
+def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
+    """What the programs of the page read; others: over the same surface, whose parts are shown as well."""
     moments = moments_of(run)
     outlines = _outlines(run, moments)
-    way = np.concatenate([moments.position[:, :2], outlines.reshape(-1, 2)])
+    others_at = [one.rows.position for one in others]
+    way = np.concatenate([moments.position[:, :2], outlines.reshape(-1, 2), *others_at])
     points, triangles = _around(run.points, run.triangles, way)
     heights = heights_at(run, moments, points)
     place = run.points[points]
@@ -48,7 +52,8 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     box = np.stack([place.min(axis=0), place.max(axis=0)])
-    window = path_window(np.concatenate([run.rows.position, outlines.reshape(-1, 2)]), box, run.actuators)
+    reached = np.concatenate([run.rows.position, outlines.reshape(-1, 2), *others_at])
+    window = path_window(reached, box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     marked = np.flatnonzero(points < len(run.actuators))
     in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
@@ -88,6 +93,11 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "below": _spots(spots),
             **_face(run, moments, _planes(place, triangles, heights, position, outlines), along, scale.unit),
         },
+        "name": part_of(run) if others else "part",
+        "others": [
+            _beside(one, colour, moments.time, heights, place, triangles, along, scale)
+            for one, colour in zip(others, cycle(PARTS_COLOURS[1:]), strict=False)
+        ],
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
         "curves": curves_of(run, along),
@@ -98,6 +108,27 @@ def run_data(run: SavedRun) -> dict[str, Any]:
         "moreEvents": max(len(run.events) - MAX_EVENTS, 0),
         "lost": MARKS[run.loss.kind][3] if run.loss and run.complete else "",
     }
+
+
+def _beside(
+    run: SavedRun,
+    colour: str,
+    times: FloatArray,
+    heights: FloatArray,
+    place: FloatArray,
+    triangles: IntArray,
+    along: Unit,
+    scale: Scale,
+) -> dict[str, Any]:
+    """Another part at the moments (k,) [s] of the page, at which points (n, 2) [m] have heights (k, n) [m]."""
+    known = samples_of(run)
+    x, y, z = (np.interp(times, known.time, values) for values in (*known.position.T, known.height))
+    spots = spots_of(place, triangles, np.column_stack([x, y]))
+    flies = known.state[np.searchsorted(known.time, times, side="right") - 1] == State.FLIGHT
+    drawn = np.where(flies, z, spots.heights(heights))
+    places = {"x": x * along.per_si, "y": y * along.per_si, "z": drawn * scale.unit.per_si}
+    packed_places = {key: packed(values, "f4") for key, values in places.items()}
+    return {"name": part_of(run), "colour": colour, **packed_places, "below": _spots(spots)}
 
 
 def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
 from active_surface.views.pages.page_file import part, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import run_data
+from active_surface.views.result_file import part_of
 from common import unit_for
 from coupling import report, summary_of
-from coupling.results import SavedRun
+from coupling.results import SavedRun, name_of
 from particle import EventKind
 
 PROGRAMS = "surface.js", "curves.js", "run.js"
@@ -18,21 +20,33 @@ MAX_NAMED = 3  # actuators
 PARTIAL = "The results are partial, as they were not written to their end: this page shows the steps that were."
 
 
-def write_run_page(run: SavedRun, path: Path) -> Path:
-    """Writes the page of a run to an HTML file, as a whole or not at all; returns its path."""
-    summary, device = summary_of(run.summary), report.device(run.case)
-    warnings = [*([] if run.complete else [PARTIAL]), *report.warnings(summary)]
+def write_run_page(run: SavedRun, path: Path, others: Sequence[SavedRun] = ()) -> Path:
+    """Writes the page of a run to an HTML file, as a whole or not at all; returns its path.
+
+    others: over the same surface, whose parts are shown as well.
+    """
+    summary, device = summary_of(run.summary), report.device(run.case, 1 + len(others))
+    name, sentence = run.name, " ".join([summary.sentence, *motion(run)])
+    warnings, rows = report.warnings(summary), report.lines(summary, verbose=True)
+    if others:
+        name, summaries = name_of(run.plate_path), {part_of(one): summary_of(one.summary) for one in (run, *others)}
+        warnings = report.warnings_of_parts({part: report.warnings(one) for part, one in summaries.items()})
+        warnings = [overlap.sentence for overlap in run.overlaps] + warnings
+        rows = report.lines_of_parts(summaries)
+        sentence = " ".join(f"{part}: {one.sentence}" for part, one in summaries.items())
+        sentence += f" Clock, curves and numbers are those of {part_of(run)}."
+    warnings = [*([] if all(one.complete for one in (run, *others)) else [PARTIAL]), *warnings]
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     texts = {
         "views": part("views.html"),
-        "name": escape(run.name),
+        "name": escape(name),
         "device": escape(device),
-        "sentence": escape(report.with_micro_signs(" ".join([summary.sentence, *motion(run)]))),
+        "sentence": escape(report.with_micro_signs(sentence)),
         "trust": trust_of(report.trust(summary), warnings),
-        "rows": rows_of([*report.lines(summary, verbose=True), ("versions", versions)]),
+        "rows": rows_of([*rows, ("versions", versions)]),
         "case": escape(run.case.source or run.case.model_dump_json(indent=2)),
     }
-    return write_page(path, f"{run.name}: {device}", "run.html", texts, run_data(run), PROGRAMS)
+    return write_page(path, f"{name}: {device}", "run.html", texts, run_data(run, others), PROGRAMS)
 
 
 def motion(run: SavedRun) -> list[str]:

@@ -56,10 +56,16 @@ class _Template:
         self._shown: list[type[Table]] = []  # of the tables in tables
 
     def blocks(self) -> Iterator[str]:
+        shown: list[type[Table]] = []
         for key, field in self._model.model_fields.items():
             first, *others = tables_in(field.annotation)
-            mark = "" if field.is_required() else "#"
-            lines = [*_comment(field.description), mark + header_of((key,), self._model), *self._fields(first, mark)]
+            mark, like = (
+                "" if field.is_required() else "#",
+                next((one for one in shown if issubclass(first, one)), None),
+            )
+            shown.append(first)
+            header = mark + header_of((key,), self._model)
+            lines = [*_comment(field.description), header, *self._fields(first, mark, like)]
             for other in others:
                 lines += ["", *_comment(f"Or: {str(other.__doc__).splitlines()[0]}"), *self._fields(other, "#", first)]
                 lines += self._inner(key, other, short=True)

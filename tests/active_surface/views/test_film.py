@@ -180,6 +180,21 @@ def test_the_path_has_the_stored_steps_where_rows_are_far_apart():
     assert (scene.path == run.position[:, :2]).all() and (scene.path_time == run.time).all()
 
 
+def test_further_parts_are_in_the_frame_and_stay_where_they_were_lost():
+    run = made_run(LONG / 20 + 1e-4, lambda points: hill(points, 1e-5))
+    other = made_run((LONG / 20 - 3e-5)[:3], lambda points: hill(points, 1e-5))
+    scene = scene_of(run, [other])
+    (beside,) = scene.others
+    assert scene.colour and beside.colour and scene.colour != beside.colour
+    for path in (run.position, other.position):
+        assert ((path[:, :2] > scene.frame[0]) & (path[:, :2] < scene.frame[1])).all()
+    now, late = beside.moments(np.array([1e-3, 3.5e-3]))
+    assert now.part[:2] == pytest.approx(other.position[1, :2]) and late.part[:2] == pytest.approx(
+        other.position[2, :2]
+    )
+    assert late.amplitudes == pytest.approx(scene.moments(np.array([3.5e-3]))[0].amplitudes)
+
+
 def test_flight_is_counted_from_the_surface():
     scene = scene_of(made_run(LONG, lambda points: np.full(len(points), 1e-6), state=2, above=5e-6))
     (moment,) = scene.moments(np.array([1e-3]))

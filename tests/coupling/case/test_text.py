@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from sweeps import LATTICE, PLATE
 
-from coupling import read_case
+from coupling import read_case, read_parts
 from coupling.case import Case
 from coupling.case.writing.text import case_text, write_case
 
@@ -60,7 +60,7 @@ def told(case):
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_every_example_comes_back(file, tmp_path):
-    case = read_case(file)
+    case = read_parts(file)[0]
     again = read_case(write_case(case, tmp_path / "deep" / "again.toml", "One line.\nAnother."))
     assert told(again) == told(case) and again.name == "again"
     assert again.source.startswith("# One line.\n# Another.\n\n[plate]\n")

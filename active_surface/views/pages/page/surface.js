@@ -1,6 +1,7 @@
 // The surface of a run in three dimensions, with the part and its trail on it at the step that is shown.
 
 let surface, part, trail, units;
+let others = []; // further parts of the run
 let below; // the part, at every step
 let still; // the places of traces that move only up and down
 const FLYING = 2; // of the part's states
@@ -12,7 +13,7 @@ const EYES = {
   above: { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
   side: { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
 };
-const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6, FACE = 7;
+const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
 let closeBy = false, exaggeration = 1, shown = 0;
 
 // What this file draws, from the data of the page.
@@ -22,6 +23,7 @@ function takeSurface() {
   if (pageData.part.face) Object.assign(part, { face: pageData.part.face, heading: unpack(pageData.part.heading), plane: unpack(pageData.part.plane) });
   trail = { ...unpackSpots(pageData.trail), step: unpack(pageData.trail.step) };
   below = unpackSpots(pageData.part.below);
+  others = (pageData.others ?? []).map((one) => ({ ...one, ...Object.fromEntries(["x", "y", "z"].map((name) => [name, unpack(one[name])])), below: unpackSpots(one.below) }));
   units = pageData.units;
   still = Object.fromEntries(["x", "y"].map((axis) => [axis, [alongRim(surface[axis]), atActuators(surface[axis])]]));
 }
@@ -123,15 +125,23 @@ function outlineAt(step) {
   return found;
 }
 
+// The trails of the other parts up to a step, on the surface as it is now, each followed by the part itself.
+function othersAt(step, z) {
+  return others.flatMap((one) => [
+    { x: one.x.slice(0, step + 1), y: one.y.slice(0, step + 1), z: Array.from({ length: step + 1 }, (_, k) => valueAt(one.below, k, z) + lift("trail")) },
+    { x: [one.x[step]], y: [one.y[step]], z: [one.z[step] + lift("part")] },
+  ]);
+}
+
 // What the traces of the surface show at a step.
 function changingAt(step) {
-  const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
+  const z = heightsAt(step), { passed, ahead } = trailAt(step, z), beside = othersAt(step, z);
   const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
   const now = {
-    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]]],
-    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]]],
+    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]], ...beside.map((one) => one.x)],
+    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]], ...beside.map((one) => one.y)],
     z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
-      ahead.z, passed.z, raised([part.z[step]], part.face ? "face" : "part")],
+      ahead.z, passed.z, raised([part.z[step]], part.face ? "face" : "part"), ...beside.map((one) => one.z)],
   };
   if (part.face) {
     const outline = outlineAt(step);
@@ -168,10 +178,14 @@ function drawSurface() {
       line: { color: SOFT, width: 2 } },
     { ...quiet, mode: "lines", x: now.x[TRAIL], y: now.y[TRAIL], z: now.z[TRAIL], name: "trail", showlegend: true,
       line: { color: PATH, width: 6 } },
-    { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: "part", showlegend: true,
+    { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: pageData.name ?? "part", showlegend: true,
       marker: { size: part.face ? 4 : 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
+    ...others.flatMap(({ name, colour }, k) => [PART + 1 + 2 * k, PART + 2 + 2 * k].map((n) => ({
+      ...quiet, mode: n % 2 ? "lines" : "markers", x: now.x[n], y: now.y[n], z: now.z[n], name, showlegend: n % 2 === 0,
+      line: { color: colour, width: 6 }, marker: { size: 8, color: colour, line: { color: "#000000", width: 2 } },
+    }))),
   ];
-  if (part.face) traces.push({ ...quiet, mode: "lines", x: now.x[FACE], y: now.y[FACE], z: now.z[FACE], line: { color: "#000000", width: 5 } });
+  if (part.face) traces.push({ ...quiet, mode: "lines", x: now.x.at(-1), y: now.y.at(-1), z: now.z.at(-1), line: { color: "#000000", width: 5 } });
   const axis = { showbackground: false, gridcolor: GRID, zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
   const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
   const layout = {
