@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -93,6 +93,7 @@ class Footprint:
 
         return self.corners[ConvexHull(self.corners).vertices] if len(self.corners) else self.corners
 
+    @lru_cache(maxsize=64)  # noqa: B019  # as bodies that differ in their start alone have one footprint
     def rule(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Places (n, 2) [m] and weights (n,) that add up to 1: the mean over the face of a smooth function.
 
@@ -114,12 +115,19 @@ class Footprint:
         twice = (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])[:, None, None]
         return places.reshape(-1, 2), (np.outer(part * share, part) * twice / self.area).ravel()
 
+    @lru_cache(maxsize=64)  # noqa: B019
     def averaging(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Places (n, 2) [m] within a convex face, and weights (n,), exact for polynomials of degree 2 points - 1.
 
-        Few places, as the surface is looked at in each: Gauss's rule on a parallelogram; elsewhere those places of
-        `rule` that interpolate best (Fekete's, by a QR decomposition with pivots).
+        Few places, as the surface is looked at in each: Gauss's rule on a parallelogram; on a disc Gauss's in r^2 along
+        2 `points` rays; elsewhere those places of `rule` that interpolate best (Fekete's, by a QR decomposition with
+        pivots).
         """
+        if self.radius:
+            nodes, weights = np.polynomial.legendre.leggauss((points + 1) // 2)
+            r, angle = self.radius * np.sqrt((1 + nodes) / 2)[:, None], math.pi * np.arange(2 * points) / points
+            places = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1)
+            return places.reshape(-1, 2), np.repeat(weights / (4 * points), 2 * points)
         a, b = self.corners[1:3] - self.corners[:2] if len(self.corners) == 4 else np.zeros((2, 2))
         if len(self.corners) == 4 and np.abs(self.corners[0] + self.corners[2]).max() <= FLAT * self.reach:
             nodes, weights = np.polynomial.legendre.leggauss(points)

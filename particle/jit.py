@@ -44,6 +44,11 @@ def device_no_arrays(function: Kernel) -> Kernel:
     return _device(function, _nrt=False)
 
 
+def spliced(function: Kernel) -> Kernel:
+    """As `device_no_arrays`, its machine code put into each caller's, where falls away what that does not use of it."""
+    return _device(function, _nrt=False, forceinline=True)
+
+
 def inlined(function: Kernel) -> Kernel:
     """Compile a function into the one kernel or function that calls it."""
     return _compiled(function, inline="always")

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from particle.body.face import Face
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, spliced
 from particle.surface import (
     UNBUILT,
     Jet,
@@ -146,11 +146,11 @@ def fill_averages(
         w_2 = weight * (face.unmoments[1, 0] * rho_1 + face.unmoments[1, 1] * rho_2)
         _add(out, 2, weight, w_1, w_2, r_x, r_y, height_here(local, x + r_x, y + r_y))
         if stretches:
-            _add(out, 0, weight, w_1, w_2, r_x, r_y, plane_jet(local, 0, x + r_x, y + r_y, time))
-            _add(out, 1, weight, w_1, w_2, r_x, r_y, plane_jet(local, 1, x + r_x, y + r_y, time))
+            for along in range(2):
+                _add(out, along, weight, w_1, w_2, r_x, r_y, plane_jet(local, along, x + r_x, y + r_y))
 
 
-@device_no_arrays
+@spliced
 def _add(out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: float, r_y: float, f: Jet) -> None:
     """Add a point's share, along x, y or z, with the weights of P_0, a_1 and a_2."""
     turn_x, turn_y = -r_y * f.xx + r_x * f.xy, -r_y * f.xy + r_x * f.yy
@@ -171,7 +171,7 @@ def _add(out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: flo
     _put(out[BY_BY], along, w, w_1, w_2, -r_y * turn_x + r_x * turn_y - r_x * f.x - r_y * f.y)
 
 
-@device_no_arrays
+@spliced
 def _put(row: FloatArray, along: int, w: float, w_1: float, w_2: float, value: float) -> None:
     """Add a value to a row."""
     row[along] += w * value

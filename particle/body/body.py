@@ -15,7 +15,7 @@ from particle.footprint import Footprint
 from particle.types import FloatArray
 
 PRESSURES = ("linear", "uniform")
-FAR_POINTS = 6  # of the rule for friction that hardly turns, a side
+FAR_POINTS = 6, 4  # of the rules for friction that turns little and hardly, a side
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,8 @@ class Body:
         """Its numbers for kernels, with averages over the face exact up to the degree 2 points - 1."""
         footprint = self.footprint
         places, weights = footprint.averaging(points)
-        far, far_weights = footprint.rule(FAR_POINTS)
+        rules = [footprint.averaging(count) for count in FAR_POINTS]
+        far, farther = (np.column_stack([xy, footprint.area * share]) for xy, share in rules)
         fine, fine_weights = footprint.rule(32)
         return Face(
             places=places,
@@ -94,7 +95,7 @@ class Body:
             reach=footprint.reach,
             arm=float(fine_weights @ np.hypot(*fine.T)),
             far=far,
-            far_weights=far_weights * footprint.area,
+            farther=farther,
             inertia=np.array(self.inertia, dtype=float),
             linear=self.pressure == "linear",
             tips=tips,

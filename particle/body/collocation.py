@@ -40,4 +40,6 @@ def _weights(nodes: FloatArray) -> tuple[FloatArray, float, FloatArray]:
 
 
 NODES = _nodes()
+# (5, 5) from the values at the nodes to the coefficients of their polynomial in powers of s - 1, s the share of a step.
+AHEAD = np.linalg.inv((NODES[:, None] - 1) ** np.arange(STAGES))
 A, AT_START, DIFFERENCE = _weights(NODES)

@@ -19,8 +19,8 @@ class Face(NamedTuple):
     area: float  # m^2
     reach: float  # m, of the farthest point
     arm: float  # m, the mean of |rho|
-    far: FloatArray  # (f, 2) m, a rule for friction that hardly turns
-    far_weights: FloatArray  # (f,) m^2
+    far: FloatArray  # (f, 3) m, m, m^2, a rule for friction that turns little: places and weights
+    farther: FloatArray  # the same for friction that hardly turns
     inertia: FloatArray  # (3, 3) kg m^2, about the centre of mass
     linear: bool  # whether the pressure follows the moments; else it is uniform
     tips: bool  # whether the path ends where an edge lifts

@@ -24,6 +24,7 @@ from particle.records import Record
 from particle.types import FloatArray
 
 TURNS, SETTLED = 60, 1e-12
+SMALL = 1e-11  # of D, what is still gained: one more of Newton's steps, each of which squares it, and it is rounding
 STEP = 1e-6  # of a slip, to see how friction turns with it
 
 
@@ -118,13 +119,11 @@ def gauge(part: Part, face: Face, b: Balance, s: Search) -> float:
         share, gain = 1.0, g_1 * d_1 + g_2 * d_2
         while True:
             found = _resistance(part, face, p_1 + share * d_1, p_2 + share * d_2, b, s, s.friction)
-            if found <= best - 1e-4 * share * gain or share < 1e-9:
+            if found <= best - 1e-4 * share * gain or share < 1e-9 or gain <= SMALL * best:
                 break
             share *= 0.5
-        if share < 1e-9:
-            break
         p_1, p_2, best = p_1 + share * d_1, p_2 + share * d_2, found
-        if share == 1.0 and gain <= SETTLED * SETTLED * best + 1e-15 * best:
+        if share < 1e-9 or gain <= SMALL * best:
             break
     size_e = math.sqrt(1.0 + p_1 * p_1 + p_2 * p_2)
     for i in range(3):

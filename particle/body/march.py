@@ -35,8 +35,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     state, part = memory.step[0].state, request.part
     for k in range(STATE):
         state[k] = request.start[k]
-    for k in range(3):
-        memory.step[0].lead[0, k] = memory.step[0].lead[1, k] = 0.0
+    memory.step[0].lead[:] = 0.0
     now.time = now.span_end = request.begin
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
     # A part that is about to slip, as at a row of its path, slips without a further event; so does one that reverses.
@@ -77,9 +76,6 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
         if record.lengths[0].rows == 0:
             fill_row(part, face, memory, now.mode, memory.row[0])
             record = write(record, memory.row[0])
-            if now.mode == Mode.SLIDING:
-                for k in range(3):
-                    memory.step[0].lead[0, k] = memory.balance[0].rates[k]
         event = NO_EVENT
         if now.mode == Mode.RESTING:
             if _rest(surface, request, face, memory) == EventKind.SLIPS:

@@ -27,7 +27,7 @@ class Step(Record):
     """The state of a part, and a step from it."""
 
     state: Annotated[FloatArray, STATE]
-    lead: Annotated[FloatArray, 2, 3]  # acceleration and jerk, from which a step's stages are guessed
+    lead: Annotated[FloatArray, STAGES, 3]  # acceleration in powers of the time ahead: from it stages are guessed
     stages: Annotated[FloatArray, STAGES, STATE]  # their states; in the ledger their powers
     rates: Annotated[FloatArray, STAGES, 3]  # their accelerations
     margins: Annotated[FloatArray, STAGES]  # how far each is from the end of contact
@@ -35,6 +35,9 @@ class Step(Record):
     system: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
     steps: Annotated[FloatArray, UNKNOWNS]
     end: Annotated[FloatArray, STATE]  # the state at the end of the step
+    friction: float  # 1/s, friction's own rate as a step begins
+    before: float  # s, the last step
+    speed: float  # m/s, of the slip as a step begins
     carried: Annotated[FloatArray, 6]  # the face's carried twist before a breakpoint
 
 

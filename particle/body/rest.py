@@ -21,7 +21,7 @@ from particle.friction import friction_limit, friction_slope
 from particle.jit import device_no_arrays, inlined
 
 PER_STROKE, LEAST, MOST = 24, 4, 400  # moments looked at in the shortest stroke, and in a span
-SAFE = 0.5  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
+SAFE = 0.85  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
 INNER = 0.8  # of friction's limits: an ellipsoid as large lies within them, on rectangles to 4:1, L-shapes and discs
 NEAR = 0.1  # of the limit: a dip as near is looked at
 HALVINGS = 60

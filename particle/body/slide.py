@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from particle.body.averages import within_cells
-from particle.body.balance import energy_of, find_rates, powers, solve
-from particle.body.collocation import AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
+from particle.body.balance import energy_of, find_rates, powers, set_load, solve
+from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
 from particle.body.face import Face
 from particle.body.limit import gauge, needed, slip_rate
 from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
@@ -19,10 +19,13 @@ from particle.surface import Surface
 
 FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
-BEFORE_STOP = 0.6  # of the time to a stop: the longest step
+BEFORE_STOP = 0.75  # of the time to a stop: the longest step
 STOPPED = 1e-7, 1e-3  # of a stroke, of the tolerance: how close a stop's time and place must be
-STIFF = 0.02  # of a step times friction's own rate, from where on Newton's method finds its stages
-PASSES = 12
+STIFF = 0.01  # of a step times friction's own rate, from where on Newton's method finds its stages
+PASSES, FOUND = 12, 1e-3  # FOUND: of what a step may be off by, how exactly its stages are found
+RELATIVE = 1e-2  # of the speed as a step begins: how far a rate may be off at most
+SLOW = 0.05  # of a pass: what it leaves of the last one's change, from where on friction's turns are found anew
+LONGER = 2.0  # steps: how far the last step's accelerations are extrapolated in full
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-13
 
 
@@ -61,6 +64,8 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     for i in range(3):
         state[X + i] += way * b.rates[i]
         state[V_X + i] = speed * b.rates[i]
+        for k in range(2, STAGES):
+            memory.step[0].lead[k, i] = 0.0
         memory.step[0].lead[0, i] = rate * b.rates[i]
         memory.step[0].lead[1, i] = (rate - first) / moment * b.rates[i]
     settle(part, face, memory, state, now.time)
@@ -76,27 +81,32 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
 
 @inlined
 def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int:
-    """Move the part on by one step of about now.h [s], or to its stop: STOPS, REVERSES or NO_EVENT."""
+    """Move the part on by one step of about now.h [s], or to its stop: STOPS, REVERSES or NO_EVENT.
+
+    The equations are set up already, for the last row; anew only where accelerations may jump between spans.
+    """
     now: Now = memory.now[0]
-    part, state, b = request.part, memory.step[0].state, memory.balance[0]
-    settle(part, face, memory, state, now.time)
+    part, step, b = request.part, memory.step[0], memory.balance[0]
+    state = step.state
+    if request.bridged[0] == 0.0:
+        settle(part, face, memory, state, now.time)
     speed = slip_speed(face, memory)
     if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
         now.verdict = Verdict.TIPPED
         return NO_EVENT
+    step.friction, step.speed = powers(part, b)[1] / (part.mass * speed * speed), speed
     slowing = 0.0
     for i in range(3):
+        unit = face.arm if i == 2 else 1.0
         rate = b.planar[i, 0] * b.rates[0] + b.planar[i, 1] * b.rates[1] + b.planar[i, 2] * b.rates[2]
-        slowing -= rate * b.slip[i] * (face.arm * face.arm if i == 2 else 1.0) / speed
+        slowing -= unit * unit * rate * b.slip[i] / speed
+        step.lead[0, i] = b.rates[i]
     remaining = now.span_end - now.time
     now.h = remaining if now.h >= 0.9 * remaining else now.h
     if slowing > 0.0:
         until = speed / slowing
-        if (
-            until <= remaining
-            and until < STOPPED[0] * request.stroke_time
-            and speed * until < STOPPED[1] * request.tolerance
-        ):
+        close = until < STOPPED[0] * request.stroke_time and speed * until < STOPPED[1] * request.tolerance
+        if close and until <= remaining:
             return _stop(request, face, memory, until)
         now.h = min(now.h, BEFORE_STOP * until)
     while True:
@@ -112,20 +122,25 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
             continue
         least = math.inf
         for k in range(STAGES - 1):
-            least = min(least, memory.step[0].margins[k])
-        if memory.step[0].margins[STAGES - 1] < 0.0:
+            least = min(least, step.margins[k])
+        if step.margins[STAGES - 1] < 0.0:
             _end_contact(surface, request, face, memory)
             return NO_EVENT
         if least < 0.0:
             now.h *= 0.5
             continue
         break
-    step, h = memory.step[0], now.h
+    h = now.h
     for i in range(STATE):
         state[i] = step.end[i]
     for i in range(3):
-        change = step.rates[STAGES - 1, i] - step.rates[STAGES - 2, i]
-        step.lead[0, i], step.lead[1, i] = step.rates[STAGES - 1, i], change / (h * (1.0 - NODES[STAGES - 2]))
+        power = 1.0
+        for k in range(STAGES):
+            step.lead[k, i] = 0.0
+            for j in range(STAGES):
+                step.lead[k, i] += AHEAD[k, j] * step.rates[j, i] / power
+            power *= h
+    step.before = h
     now.time = now.span_end if h == remaining else now.time + h
     now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
     return NO_EVENT
@@ -137,7 +152,7 @@ def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
     now: Now = memory.now[0]
     part, state, b = request.part, memory.step[0].state, memory.balance[0]
     work, loss = powers(part, b)
-    state[WORK] += work * until
+    e_1, e_2, e_3 = b.slip[0], b.slip[1], b.slip[2]
     state[LOSS] += 0.5 * loss * until
     for i in range(3):
         state[X + i] += 0.5 * until * state[V_X + i]
@@ -145,6 +160,9 @@ def _stop(request: Request, face: Face, memory: Memory, until: float) -> int:
     now.time += until
     settle(part, face, memory, state, now.time)
     needed(b, memory.search[0].needed)
+    find_rates(part, face, e_1, e_2, e_3, b)
+    state[WORK] += 0.5 * (work + powers(part, b)[0]) * until
+    set_load(part, 0.0, 0.0, 0.0, b)
     now.mode = Mode.RESTING
     return EventKind.REVERSES.value if gauge(part, face, b, memory.search[0]) > 1.0 + CLOSE else EventKind.STOPS.value
 
@@ -164,21 +182,25 @@ def _end_contact(surface: Surface, request: Request, face: Face, memory: Memory)
     for i in range(STATE):
         memory.step[0].state[i] = memory.step[0].end[i]
     now.time += high
-    now.verdict = end_reason(surface, request.part, face, memory, memory.step[0].state)
+    now.verdict = end_reason(surface, request.part, face, memory, memory.step[0].stages[STAGES - 1])
 
 
 @device_no_arrays
 def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: float) -> bool:
     """Try a step of h [s]: its stages, and its end; False where they are not found or leave their cells."""
     part, state, stages, b = request.part, memory.step[0].state, memory.step[0].stages, memory.balance[0]
-    time = memory.now[0].time
+    time, step = memory.now[0].time, memory.step[0]
+    powers_ahead = STAGES if h <= LONGER * step.before else 2
     for k in range(STAGES):
         t = NODES[k] * h
         for i in range(3):
-            stages[k, V_X + i] = state[V_X + i] + t * (memory.step[0].lead[0, i] + 0.5 * t * memory.step[0].lead[1, i])
-    small = 1e-4 * request.tolerance / request.stroke_time
+            guess = 0.0
+            for j in range(powers_ahead - 1, -1, -1):
+                guess = guess * t + step.lead[j, i] / (j + 1)
+            stages[k, V_X + i] = state[V_X + i] + t * guess
+    stiff, anew, before = h * step.friction > STIFF, True, math.inf
+    small = FOUND * min(request.tolerance / request.stroke_time, RELATIVE * step.speed)
     for turn in range(PASSES):
-        stiff = False
         for k in range(STAGES):
             for i in range(3):
                 total = 0.0
@@ -195,48 +217,46 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
             if not find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b):
                 return False
             for i in range(3):
-                memory.step[0].rates[k, i] = b.rates[i]
+                step.rates[k, i] = b.rates[i]
             stages[k, WORK], stages[k, LOSS] = powers(part, b)
-            memory.step[0].margins[k] = min(
-                contact_margin(part, face, memory), rim_margin(surface, face, stages[k]) / surface.size
-            )
-            if h * stages[k, LOSS] > STIFF * part.mass * speed * speed:
-                stiff = True
-                if turn < 2 and not _fill_turns(request, face, memory, k):
-                    return False
+            rim = rim_margin(surface, face, stages[k]) / surface.size
+            step.margins[k] = min(contact_margin(part, face, memory), rim)
+            if stiff and anew and not _fill_turns(request, face, memory, k):
+                return False
         for k in range(STAGES):
             for i in range(3):
                 total = 0.0
                 for j in range(STAGES):
-                    total += A[k, j] * memory.step[0].rates[j, i]
-                memory.step[0].steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
+                    total += A[k, j] * step.rates[j, i]
+                step.steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
         if stiff and not _newton(memory, h):
             return False
         largest = fastest = 0.0
         for k in range(STAGES):
             for i in range(3):
                 unit = face.arm if i == 2 else 1.0
-                stages[k, V_X + i] += memory.step[0].steps[3 * k + i]
-                largest = max(largest, unit * abs(memory.step[0].steps[3 * k + i]))
+                stages[k, V_X + i] += step.steps[3 * k + i]
+                largest = max(largest, unit * abs(step.steps[3 * k + i]))
                 fastest = max(fastest, unit * abs(stages[k, V_X + i]))
         if not largest < 1e3 * surface.size / request.stroke_time:
             return False
-        if turn > 0 and largest <= max(small, 1e-14 * fastest):
+        if (min(1.0, largest / before) if turn > 0 else 1.0) * largest <= max(small, 1e-14 * fastest):
             break
         if turn == PASSES - 1:
             return False
+        anew, before = largest > SLOW * before, largest
     for i in range(STATE):
-        memory.step[0].end[i] = stages[STAGES - 1, i]
+        step.end[i] = stages[STAGES - 1, i]
     for i in (WORK, LOSS):
         total = 0.0
         for j in range(STAGES):
             total += A[STAGES - 1, j] * stages[j, i]
-        memory.step[0].end[i] = state[i] + h * total
+        step.end[i] = state[i] + h * total
     for i in range(3):
         total = 0.0
         for j in range(STAGES):
             total += A[STAGES - 1, j] * stages[j, V_X + i]
-        memory.step[0].end[X + i] = state[X + i] + h * total
+        step.end[X + i] = state[X + i] + h * total
     return True
 
 
@@ -277,7 +297,7 @@ def _error(request: Request, face: Face, memory: Memory, h: float) -> float:
     An error of a rate counts as what it moves the part by in the shortest stroke.
     """
     state, stages, m = memory.step[0].state, memory.step[0].stages, memory.balance[0].matrix
-    stiff = h * stages[0, LOSS] > 0.0 and memory.step[0].turns[0, 0, 0] != 0.0
+    stiff = h * memory.step[0].friction > STIFF
     for i in range(3):
         error = AT_START * memory.step[0].lead[0, i]
         for k in range(STAGES):

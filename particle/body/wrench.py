@@ -19,7 +19,8 @@ from particle.body.face import Face
 from particle.jit import device_no_arrays
 from particle.types import FloatArray
 
-FAR = 8.0  # reaches from the face to the centre of rotation, beyond which a rule over the face is as exact
+# Reaches from the face to the centre of rotation, beyond which rules over the face are as exact.
+FAR, FARTHER = 8.0, 60.0
 CIRCLE = 64  # points around a disc whose centre of rotation is far from its rim
 
 
@@ -42,8 +43,12 @@ def fill_wrenches(face: Face, v_1: float, v_2: float, omega: float, out: FloatAr
 
     out: (3, 3) m^2, m^3 and, of tau, once more m.
     """
-    if math.hypot(v_1, v_2) > FAR * face.reach * abs(omega):
-        _fill_far(face, v_1, v_2, omega, out)
+    distance, turn = math.sqrt(v_1 * v_1 + v_2 * v_2), face.reach * abs(omega)
+    if distance > FARTHER * turn:
+        _fill_far(face.farther, v_1, v_2, omega, out)
+        return
+    if distance > FAR * turn:
+        _fill_far(face.far, v_1, v_2, omega, out)
         return
     x, y = -v_2 / omega, v_1 / omega
     a = _of_disc(face.radius, x, y) if face.radius > 0.0 else _of_polygon(face.corners, x, y)
@@ -60,15 +65,15 @@ def fill_wrenches(face: Face, v_1: float, v_2: float, omega: float, out: FloatAr
 
 
 @device_no_arrays
-def _fill_far(face: Face, v_1: float, v_2: float, omega: float, out: FloatArray) -> None:
-    """The same by a rule over the face."""
+def _fill_far(rule: FloatArray, v_1: float, v_2: float, omega: float, out: FloatArray) -> None:
+    """The same by a rule over the face, rows of x, y [m] and weights [m^2]."""
     for i in range(3):
         for j in range(3):
             out[i, j] = 0.0
-    for k in range(len(face.far)):
-        x, y = face.far[k, 0], face.far[k, 1]
+    for k in range(len(rule)):
+        x, y = rule[k, 0], rule[k, 1]
         u_1, u_2 = v_1 - omega * y, v_2 + omega * x
-        weight = face.far_weights[k] / math.sqrt(u_1 * u_1 + u_2 * u_2)
+        weight = rule[k, 2] / math.sqrt(u_1 * u_1 + u_2 * u_2)
         f_1, f_2 = -weight * u_1, -weight * u_2
         torque = x * f_2 - y * f_1
         out[0, 0] += f_1

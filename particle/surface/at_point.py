@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER, evaluate_piece
-from particle.jit import device_no_arrays, jit
+from particle.jit import device_no_arrays, jit, spliced
 from particle.surface.cells import UNBUILT
 from particle.surface.jet import Jet, at_time, fill_quintics, jet
 from particle.surface.local import Frame, LocalSurface
@@ -73,13 +73,15 @@ POINT_SIZE = len(SurfacePoint._fields)
 
 @device_no_arrays
 def set_time(local: LocalSurface, time: float) -> None:
-    """Prepare `height_here` for a time [s] of the prepared span."""
+    """Prepare `height_here` and `plane_jet` for a time [s] of the prepared span."""
     frame: Frame = local.frame[0]
-    count = frame.monomials + frame.logarithms
-    at_time(local.smooth, local.at, 0, count, (time - frame.time) / frame.unit, frame.unit)
+    s = (time - frame.time) / frame.unit
+    at_time(local.smooth, local.at, frame.monomials + frame.logarithms, s, frame.unit)
+    if frame.in_plane > 0:
+        at_time(local.plane, local.plane_at, 2 * frame.plane_monomials, s, frame.unit)
 
 
-@device_no_arrays
+@spliced
 def height_here(local: LocalSurface, x: float, y: float) -> Jet:
     """w and its derivatives at a point [m] of the prepared cell and the time of `set_time`.
 
@@ -92,38 +94,38 @@ def height_here(local: LocalSurface, x: float, y: float) -> Jet:
     w, w_t, w_tt, g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.f, f.t, f.tt, f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
     h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
     t_xxx, t_xxy, t_xyy, t_yyy = f.xxx, f.xxy, f.xyy, f.yyy
+    per = 1 / size
     for j in range(frame.logarithms):
-        d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
-        square = d_x * d_x + d_y * d_y
-        bounded, inner, logarithm = _logarithm(frame.floor, square)
+        d_x, d_y = (x - local.sources[j, 0]) * per, (y - local.sources[j, 1]) * per
+        bounded, inner, logarithm = _logarithm(frame.floor, d_x * d_x + d_y * d_y)
         m = frame.monomials + j
         f_k, f_t, f_tt = local.at[0, m], local.at[1, m], local.at[2, m]
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
-        slope = (logarithm + 1 + inner) / size
+        bend, once = logarithm + 1 + inner, 2 / bounded
         w += f_k * value
         w_t += f_t * value
         w_tt += f_tt * value
-        g_x += f_k * slope * d_x
-        g_y += f_k * slope * d_y
-        g_xt += f_t * slope * d_x
-        g_yt += f_t * slope * d_y
-        g_xtt += f_tt * slope * d_x
-        g_ytt += f_tt * slope * d_y
-        bend_t = f_t / (size * size)
-        h_xxt += bend_t * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
-        h_xyt += bend_t * 2 * d_x * d_y / bounded
-        h_yyt += bend_t * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
+        slope_x, slope_y = bend * d_x * per, bend * d_y * per
+        g_x += f_k * slope_x
+        g_y += f_k * slope_y
+        g_xt += f_t * slope_x
+        g_yt += f_t * slope_y
+        g_xtt += f_tt * slope_x
+        g_ytt += f_tt * slope_y
+        bend_xx, bend_yy = (bend + once * d_x * d_x) * per * per, (bend + once * d_y * d_y) * per * per
+        bend_xy = once * d_x * d_y * per * per
+        h_xx += f_k * bend_xx
+        h_xy += f_k * bend_xy
+        h_yy += f_k * bend_yy
+        h_xxt += f_t * bend_xx
+        h_xyt += f_t * bend_xy
+        h_yyt += f_t * bend_yy
         # Within the floor the third derivatives are those of the parabola in r^2.
-        twist, once = f_k / (size * size * size), 2 / bounded
-        cubed = -4 / (bounded * bounded) if inner == 0.0 else 0.0
+        twist, cubed = f_k * per * per * per, -once * once if inner == 0.0 else 0.0
         t_xxx += twist * d_x * (3 * once + cubed * d_x * d_x)
         t_xxy += twist * d_y * (once + cubed * d_x * d_x)
         t_xyy += twist * d_x * (once + cubed * d_y * d_y)
         t_yyy += twist * d_y * (3 * once + cubed * d_y * d_y)
-        bend = f_k / (size * size)
-        h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
-        h_xy += bend * 2 * d_x * d_y / bounded
-        h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     return Jet(
         *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
         *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy),
@@ -147,7 +149,7 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
     x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
     x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
     if frame.in_plane > 0:
-        along_x, along_y = plane_jet(local, 0, x, y, time), plane_jet(local, 1, x, y, time)
+        along_x, along_y = plane_jet(local, 0, x, y), plane_jet(local, 1, x, y)
         x_x, x_y, y_x, y_y = 1 + along_x.x, along_x.y, along_y.x, 1 + along_y.y
         x_xt, x_yt, y_xt, y_yt = along_x.xt, along_x.yt, along_y.xt, along_y.yt
         x_xx, x_xy, x_yy, y_xx, y_xy, y_yy = along_x.xx, along_x.xy, along_x.yy, along_y.xx, along_y.xy, along_y.yy
@@ -170,17 +172,16 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
     )
 
 
-@device_no_arrays
-def plane_jet(local: LocalSurface, along: int, x: float, y: float, time: float) -> Jet:
-    """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded."""
+@spliced
+def plane_jet(local: LocalSurface, along: int, x: float, y: float) -> Jet:
+    """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded, as `height_here`."""
     frame: Frame = local.frame[0]
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
-    first, end = along * frame.plane_monomials, (along + 1) * frame.plane_monomials
-    at_time(local.plane, local.plane_at, first, end, (time - frame.time) / frame.unit, frame.unit)
+    end = (along + 1) * frame.plane_monomials
     return jet(local.plane_at, end, frame.plane_degree, u, v, frame.half_x, frame.half_y)
 
 
-@device_no_arrays
+@spliced
 def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
@@ -249,7 +250,7 @@ def sample_surface(
             out[n, k] = 0.0
         if local.frame[0].in_plane > 0:
             for along in range(2):
-                u, k = plane_jet(local, along, x, y, times[n]), POINT_SIZE + 5 * along
+                u, k = plane_jet(local, along, x, y), POINT_SIZE + 5 * along
                 out[n, k], out[n, k + 1], out[n, k + 2], out[n, k + 3], out[n, k + 4] = u.f, u.t, u.tt, u.xtt, u.ytt
     return out, missing
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from particle.drives import ORDER
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, spliced
 from particle.types import FloatArray
 
 
@@ -34,15 +34,15 @@ class Jet(NamedTuple):
 
 
 @device_no_arrays
-def at_time(c: FloatArray, at: FloatArray, first: int, end: int, s: float, unit: float) -> None:
-    """sum_k c[k, m] s^k and its two derivatives in t = unit s [s] into at[:3, m], first <= m < end."""
-    for m in range(first, end):
+def at_time(c: FloatArray, at: FloatArray, end: int, s: float, unit: float) -> None:
+    """sum_k c[k, m] s^k and its two derivatives in t = unit s [s] into at[:3, m], m < end."""
+    for m in range(end):
         at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
         at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
 
 
-@device_no_arrays
+@spliced
 def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
     """f = sum c_ij u^i v^j, i + j <= degree, and its derivatives, with the monomials at[:, m] that end before `end`.
 
