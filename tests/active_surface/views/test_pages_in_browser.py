@@ -81,7 +81,7 @@ def test_the_outline_of_a_face_is_to_scale_and_turned_at_the_last_step(open_page
     browser = open_page("faced")
     browser.find_element(By.ID, "step").send_keys(Keys.END)
     drawn(browser)
-    x, y, z = browser.execute_script("const { x, y, z } = element('surface').data[FACE]; return [x, y, z]")
+    x, y, z = browser.execute_script("const { x, y, z } = element('surface').data[PART + 1]; return [x, y, z]")
     path = faced.trajectory
     outline = faced.case.part.face.outline(path.position[-1], path.heading[-1]) * 1e6
     assert np.column_stack([x[:6], y[:6]]) == pytest.approx(outline, abs=1e-4)
