@@ -129,8 +129,9 @@ def pressing_force(load: FloatArray, friction: Contact) -> FloatArray:
     The adhesion is that of the separation in a rough contact, the pull-off force in other laws, and 0 with a constant
     limit, which states none.
     """
-    if isinstance(friction, KogutEtsion):
-        contact, adhesion, _ = friction.forces(np.linspace(*friction.branch[::-1], SEPARATIONS))
+    rough = friction.flat if isinstance(friction, LocalContact) else friction
+    if isinstance(rough, KogutEtsion):
+        contact, adhesion, _ = rough.forces(np.linspace(*rough.branch[::-1], SEPARATIONS))
         return np.asarray(np.interp(load, contact - adhesion, contact))
     return load + (friction.pull_off if states_adhesion(friction) else 0.0)
 

@@ -24,6 +24,7 @@ Outlines = tuple[FloatArray, float]
 
 BLOCK: Final = 1000  # moments at which outlines are compared together
 HALVINGS: Final = 50  # of the time between two moments
+SHRINKS: Final = 1e-9  # of a part's size
 MARGIN: Final = 0.1  # of a path's extent, by which it may reach beyond its rows
 
 
@@ -129,9 +130,10 @@ def overlapping(one: Outlines, other: Outlines) -> BoolArray:
     """Whether two parts overlap, at each of k moments."""
     (a, _), (b, _), apart = one, other, one[1] + other[1]
     along_a, along_b = np.roll(a, -1, axis=1) - a, np.roll(b, -1, axis=1) - b
+    within_a, within_b = _shrunk(a), _shrunk(b)  # whose corners are within the other where the parts coincide
     beside_a, beside_b = _beside(a, along_a, b), _beside(b, along_b, a)  # (k, sides, corners)
     crosses = (beside_a * np.roll(beside_a, -1, axis=2) < 0) & (beside_b * np.roll(beside_b, -1, axis=2) < 0).mT
-    found = crosses.any(axis=(1, 2)) | _within(a, along_a, beside_a, b) | _within(b, along_b, beside_b, a)
+    found = crosses.any(axis=(1, 2)) | _within(a, along_a, within_b) | _within(b, along_b, within_a)
     if apart:
         found |= np.minimum(_distance(a, along_a, b), _distance(b, along_b, a)) < apart
     return np.asarray(found)
@@ -143,8 +145,15 @@ def _beside(corners: FloatArray, along: FloatArray, places: FloatArray) -> Float
     return np.asarray(along[..., None, 0] * away[..., 1] - along[..., None, 1] * away[..., 0])
 
 
-def _within(corners: FloatArray, along: FloatArray, beside: FloatArray, places: FloatArray) -> BoolArray:
+def _shrunk(corners: FloatArray) -> FloatArray:
+    """Corners (k, n, 2) just nearer to their middle."""
+    middle = corners.mean(axis=1, keepdims=True)
+    return np.asarray(middle + (1 - SHRINKS) * (corners - middle))
+
+
+def _within(corners: FloatArray, along: FloatArray, places: FloatArray) -> BoolArray:
     """Whether any of places (k, n, 2) is in a polygon (k, m, 2): an odd number of sides are to the right of it."""
+    beside = _beside(corners, along, places)
     starts_above = corners[:, :, None, 1] > places[:, None, :, 1]
     ends_above = (corners + along)[:, :, None, 1] > places[:, None, :, 1]
     right = (starts_above != ends_above) & ((beside > 0) == ends_above)

@@ -39,8 +39,9 @@ def draw_contact() -> None:
 
 
 STROKES = ("10 um", "5 um")
+FLAT = {"size": "95 um"}
 PARTS = {  # of the main job's cube; colours
-    "a point": ({"size": "95 um"}, "black"),
+    "a point": (FLAT, "black"),
     "a face of 95 µm": ({"footprint": "rectangle", "sides": ["95 um", "95 um"], "thickness": "90 um"}, "#1b4f9c"),
     "a point, contact local under 95 µm": ({"size": "95 um", "local_contact": True}, "#c8371b"),
 }
@@ -74,7 +75,7 @@ def main_job(part: dict[str, object], stroke: str) -> Case:
         plate=base.plate,
         actuators=drives,
         part=cube | part,
-        friction={"model": "kogut-etsion", "preset": "paper"},
+        friction={"model": "kogut-etsion", "preset": "paper"} | ({"contact_area": 95e-6**2} if part == FLAT else {}),
         run={"duration": "20 ms"},
     )
 

@@ -45,7 +45,7 @@ def device_no_arrays(function: Kernel) -> Kernel:
 
 
 def spliced(function: Kernel) -> Kernel:
-    """As `device_no_arrays`, its machine code put into each caller's, where falls away what that does not use of it."""
+    """As `device_no_arrays`, compiled into each caller, which drops what it does not use."""
     return _device(function, _nrt=False, forceinline=True)
 
 

@@ -44,7 +44,7 @@ class PartAtRest:
         return replace(self, surface=self.surface.scaled(factor, stroke), times=self.times / factor)
 
     def loads_and_demands(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The net load (n,) on the part and the force (n,) that would hold it, N, at ascending times (n,) [s]."""
+        """The net load (n,) and the force (n,) that it needs, N, as on a flat surface, at ascending times (n,) [s]."""
         place = np.asarray(self.place, dtype=float)
         loads, pulls = np.empty(len(times)), np.empty(len(times))
         for k in range(0, len(times), BLOCK):

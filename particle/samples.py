@@ -95,7 +95,7 @@ class ContactSamples(NamedTuple):
     normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
     normal_force: FloatArray  # (k,) N, net, along the normal
     friction: FloatArray  # (k, 3) N, on the part
-    pull: FloatArray  # (k,) m/s^2, along the surface, without friction, as on a flat surface; 0 in flight
+    pull: FloatArray  # (k,) m/s^2, along the surface, without friction, scaled to the flat law's limit; 0 in flight
     point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
     added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
     separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law

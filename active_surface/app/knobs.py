@@ -70,9 +70,11 @@ def knobs_of(case: Case, selected: str) -> list[dict[str, Any]]:
         groups.append((title, list(_found(case, f"actuators.{selected}", [*keys, *places]))))
     else:
         groups.append(("Platform", list(_of_platform(case))))
-    idle = "heading" if case.part.face is None else "contact_area"  # a point does not turn; the area of a face counts
+    part = case.part
+    idle = ["heading"] if part.face is None else ["contact_area"]  # a point does not turn; the area of a face counts
+    idle += ["contact_area"] if part.local_contact and part.size is not None else []
     for table, of in (("part", OF_PART), ("friction", OF_FRICTION)):
-        groups.append((table.capitalize(), list(_found(case, table, [key for key in of if key != idle]))))
+        groups.append((table.capitalize(), list(_found(case, table, [key for key in of if key not in idle]))))
     groups.append(("Run", list(_found(case, "run", OF_RUN))))
     if isinstance(case.plate, PlateCase):
         groups.append(("Plate", [*_chosen(case), *_found(case, "plate", OF_PLATE)]))

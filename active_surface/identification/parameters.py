@@ -15,7 +15,7 @@ from coupling.case import Case, Field, find_field, quoted
 
 FACTOR: Final = 10.0  # either way, of usual bounds
 FREE: Final = ("part", "friction")  # tables whose fields one moving surface serves
-PLACES: Final = ("part.position.", "part.velocity.")  # of which a factor says nothing
+PLACES: Final = ("part.position.", "part.velocity.", "part.heading", "part.spin")  # of which a factor says nothing
 EXAMPLES: Final = {"N": '"1 nN", "1 uN"', "m": '"0 um", "100 um"', "kg": '"1e-10 kg", "1e-8 kg"'}
 
 Bounds = Mapping[str, Sequence[Any]]
@@ -97,7 +97,7 @@ def _usual(field: Field) -> tuple[float, float]:
     """A tenth and ten times what the case has, or the nearest factors that the field may have."""
     base = field.base
     if field.path.startswith(PLACES) or not isinstance(base, (int, float)) or base <= 0:
-        without = "places, velocities and fields without a positive value have none by default"
+        without = "places, headings, their rates and fields without a positive value have none by default"
         raise ValueError(f"must be given, such as {_example(field)}: {without}")
     low, high = (
         next(value for share in np.linspace(1, 0, 21) if _allowed(field, value := float(base * factor**share)))

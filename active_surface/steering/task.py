@@ -149,6 +149,8 @@ class Route:
         number: of the leg, where several may lead to a way-point.
         """
         leg = way_point if number is None else number
+        if leg and self.case.part.face is not None:
+            raise ValueError("Input case of a later leg must have no footprint, whose heading no leg carries on")
         case = _from(self.case, start if leg else None)
         return Task(case, self.through[way_point], self.settings, f"{self.name}_leg_{leg}")
 
@@ -224,7 +226,7 @@ def mistakes(case: Case, settings: Settings, target: Place | None, heading: floa
             f"{soonest * 1e3:g} ms, and the run ends at {duration * 1e3:g} ms",
         )
     away = float(np.hypot.reduce(offset(target, _turn(case, heading), case.part.position, case.part.heading)))
-    if away <= settings.tolerance and not any(case.part.velocity):
+    if away <= settings.tolerance and not any((*case.part.velocity, case.part.spin)):
         as_length = "" if heading is None else ", its heading included"
         yield (
             "target",

@@ -89,8 +89,10 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
     for place in (place for place, part in parts.items() if part.local_contact):
         if not isinstance(friction, KogutEtsionCase):
             yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
-        if run.scheme == "paper":
-            yield ("run", "scheme"), f'must be "events" or "fixed" with local_contact = true in {where}; got "paper"'
+        elif parts[place].size is not None and "contact_area" in stated(friction):
+            yield ("friction", "contact_area"), f"must not be given with local_contact and size in {where}"
+    if run.scheme == "paper" and any(part.local_contact for part in parts.values()):
+        yield ("run", "scheme"), f'must be "events" or "fixed" with local_contact = true in {where}; got "paper"'
     motion = getattr(tables.plate, "motion", None)
     if isinstance(motion, MotionCase) and motion.turn is not None and any(part.face is None for part in parts.values()):
         yield ("plate", "motion", "turn"), f"must not be given without a footprint in {where}: a point has no heading"

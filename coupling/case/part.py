@@ -90,7 +90,7 @@ class PartCase(Table):
     spin: AngularVelocity = 0.0
     """How fast it turns at the start."""
     size: PositiveLength | None = Field(default=None, examples=["100 um"])
-    """The side of a point's footprint, for the check of curvature; without it the root of the contact area."""
+    """The side of a point's footprint, for checks and its local contact; without it the root of the contact area."""
     local_contact: bool = False
     """Whether a rough contact follows its law point by point on the bent surface under that square."""
     squeeze: Force = Field(default=0.0, ge=0)

@@ -22,7 +22,7 @@ from particle.events import Row
 from particle.events.mechanics import Part
 from particle.jit import device_no_arrays
 from particle.modes import Verdict
-from particle.surface import LocalSurface, Surface, rim_gap
+from particle.surface import LocalSurface, Surface, has_rim, rim_gap
 from particle.types import FloatArray
 
 
@@ -79,6 +79,8 @@ def contact_margin(part: Part, face: Face, memory: Memory) -> float:
 def rim_margin(surface: Surface, face: Face, state: FloatArray) -> float:
     """How far [m] the face is from the rim; at least 0 where it is on the plate."""
     gap = rim_gap(surface, state[X], state[Y])
+    if not has_rim(surface):
+        return gap
     if face.radius > 0.0 or gap > face.reach:
         return gap - face.reach
     cosine, sine = math.cos(state[HEADING]), math.sin(state[HEADING])

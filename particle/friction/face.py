@@ -12,7 +12,7 @@ minus the least N over z. Friction resists a turn about the centroid by up to in
 from __future__ import annotations
 
 import math
-from functools import cache, cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -50,7 +50,7 @@ class SeparationLaw(Protocol):
     def far_adhesion(self, separation: ArrayLike) -> FloatArray: ...
 
 
-@cache
+@lru_cache(maxsize=16)
 def per_area(contact: SeparationLaw) -> CubicSpline:
     """p - a and q [Pa] of a contact, two columns, over ln(1 + (d - LEAST)/STRETCH)."""
     from scipy.interpolate import CubicSpline  # here, because other laws do without it

@@ -54,6 +54,8 @@ def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip
     if law.kind != LOCAL:
         return Grip(friction_limit(law, load), load)
     spread = law.places[ENDS[-1], 0] * (abs(xx) + abs(yy)) + law.places[ENDS[-1], 1] * abs(xy)
+    if not spread < math.inf:  # off the plate
+        return Grip(friction_limit(law, load), load)
     rule = 0
     while spread > SPREADS[rule]:
         rule += 1

@@ -28,5 +28,5 @@ from particle.surface.local import (
 )
 from particle.surface.moving_surface import SurfaceMotion
 from particle.surface.record import BASE, Surface
-from particle.surface.rim import ROUNDING, first_beyond, rim_gap
+from particle.surface.rim import ROUNDING, first_beyond, has_rim, rim_gap
 from particle.surface.span import enter

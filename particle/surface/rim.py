@@ -24,10 +24,16 @@ MIN_DIP = 1e-3  # of a step: shorter dips beyond the rim are not looked for,
 ROUNDING = 1e-12  # nor shallower ones, of the plate's size
 
 
+@device_no_arrays
+def has_rim(surface: Surface) -> bool:
+    """Whether the surface ends anywhere."""
+    return len(surface.conics) > 0 or len(surface.edges) > 0
+
+
 @jit_no_arrays
 def rim_gap(surface: Surface, x: float, y: float) -> float:
     """Distance [m] of (x, y) from the rim, negative off the plate; the surface's size where there is no rim."""
-    if len(surface.conics) == 0 and len(surface.edges) == 0:
+    if not has_rim(surface):
         return float(surface.size)
     inside, nearest = False, math.inf
     for k in range(len(surface.conics)):

@@ -101,6 +101,7 @@ def test_a_run_s_margins_are_those_of_the_local_law():
     [
         ({"friction": {"model": "coulomb", "coefficient": 0.1}}, "part.local_contact of Case must be false with model"),
         ({"run": {"duration": "1 ms", "scheme": "paper"}}, "run.scheme of Case must be"),
+        ({"friction": CASE["friction"] | {"contact_area": "9e3 um^2"}}, "contact_area of Case must not be given with"),
     ],
 )
 def test_what_a_local_contact_does_not_go_with_is_refused(tables, words):

@@ -276,3 +276,14 @@ def test_one_of_parts_is_a_part_and_more_are_refused_elsewhere(tmp_path: Path) -
         with pytest.raises(ValueError, match="must be cases that differ in \\[part\\] only"):
             run_parts(cases)
     assert first_overlap(run_case(first), run_case(second)) is None
+
+
+@pytest.mark.parametrize(
+    "corners", [[[-1, -1], [1, -1], [1, 1], [-1, 1]], [[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]]]
+)
+def test_parts_that_coincide_overlap_and_parts_that_touch_do_not(corners):
+    face, still = Footprint.polygon(corners), np.zeros(1)
+    same = face.outline(np.zeros((1, 2)), still)
+    beside = face.outline([[np.ptp(face.corners[:, 0]), 0.0]], still)
+    assert overlapping((same, 0.0), (same, 0.0)).all()
+    assert not overlapping((same, 0.0), (beside, 0.0)).any()

@@ -270,3 +270,10 @@ def test_friction_on_a_turning_table_is_against_the_slip(turntable):
     assert samples.normal[0] == pytest.approx([0, 0, 1], abs=1e-12)
     assert samples.friction[0, 0] < 0 and np.hypot(*samples.friction[0, :2]) == pytest.approx(path.friction_force[0])
     assert samples.centre[0, 2] - samples.contact[0, 2] == pytest.approx(2.5e-5)
+
+
+def test_a_disc_slides_on_a_platform_that_moves_by_less_than_its_radius():
+    still = platform_surface(x=Drive(0.0, 100.0), size=2e-5)
+    disc = Body(Footprint.disc(5e-5), 2e-5, 1e-9, position=(0.0, 0.0), velocity=(0.02, 0.0))
+    path = simulate(still, disc, CoulombAdhesion(0.1), 0.05)
+    assert path.distance == pytest.approx(0.02**2 / (2 * 0.1 * 9.80665), rel=1e-9)
