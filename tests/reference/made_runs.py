@@ -72,6 +72,8 @@ def made_run(path, heights, time=None, state=1, above=0.0, holes=(), actuators=1
     empty = dict.fromkeys(Samples._fields, np.empty(0)) | dict.fromkeys(Samples._field_defaults)
     rows = Samples(**empty | {"time": time, "position": path, "state": state})
     return MadeRun(
+        heading=None,
+        pressure_margin=None,
         name="made",
         complete=True,
         summary={},
