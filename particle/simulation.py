@@ -17,7 +17,7 @@ from particle.friction import LOCAL, Contact
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
-from particle.surface import SurfaceMotion, has_rim, rim_gap
+from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 from particle.types import FloatArray
 
@@ -167,7 +167,7 @@ def law_faults(part: Micropart | Body, friction: Contact) -> list[str]:
 
 def _least_gap(surface: SurfaceMotion, part: Body) -> float:
     """How far [m] the face's nearest point is inside the rim; negative beyond it."""
-    if part.footprint.radius and has_rim(surface.record):
+    if part.footprint.radius and (len(surface.record.conics) or len(surface.record.edges)):
         return float(rim_gap(surface.record, *map(float, part.position)) - part.footprint.radius)
     corners = part.footprint.outline(part.position, part.heading).tolist()
     return min(float(rim_gap(surface.record, x, y)) for x, y in corners)

@@ -114,8 +114,8 @@ def _sentence(reason: str) -> str:
 
 def _hint(text: str, line: int | None, reason: str) -> str:
     """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
-    if re.match(r"Cannot declare .*'(actuators|segments|axes|parts)'", reason):
-        return "; a table that comes again needs double brackets, as [[actuators]]"
+    if again := re.match(r"Cannot declare .*'(actuators|segments|axes|parts)'", reason):
+        return f"; a table that comes again needs double brackets, as [[{again[1]}]]"
     if re.match(r"Cannot declare .*'part'", reason):
         return "; many parts are written [[parts]]"
     if re.search(r"=\s*[+-]?\d+,\d+\s*(?:#.*)?$", line_text := text.split("\n")[(line or 1) - 1]):

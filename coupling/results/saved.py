@@ -198,7 +198,7 @@ def read_runs(path: str | os.PathLike[str]) -> list[SavedRun]:
     plates = [path.with_name(f"{name}{part}.plate{SUFFIX}") for part in ("", PARTIAL)] if kind is None else [path]
     plate = next((file for file in plates if kind != "part" and file.is_file()), None)
     parts = [] if plate is None else part_names(plate)
-    return [read_run(path.with_name(part)) for part in parts] if len(parts) > 1 else [read_run(path)]
+    return [read_run(path.with_name(part)) for part in parts] if parts not in ([], [name]) else [read_run(path)]
 
 
 def part_names(plate: Path) -> list[str]:
@@ -283,7 +283,7 @@ def _pair(path: Path) -> dict[str, Path]:
     if missing := [one for one in KINDS if not found[one]]:
         if kind is None and not any(found.values()) and (other := described(path)):
             raise ValueError(f"{EXPECTED}; got {path}, {other}")
-        if found["plate"] and len(parts := part_names(found["plate"][0])) > 1:
+        if found["plate"] and (parts := part_names(found["plate"][0])) != [name]:
             one_of = " or ".join(str(path.with_name(part)) for part in parts)
             raise ValueError(f"{EXPECTED} of one part; got {path}, of {len(parts)}: name {one_of}")
         one = kind if kind in missing else missing[0]

@@ -209,7 +209,7 @@ def test_a_platform_turns_a_part_as_it_does_in_python(tmp_path):
     same = simulate(table, body, CoulombAdhesion(0.3), 6e-3)
     for name in ("position", "heading", "spin"):
         assert getattr(path, name).tobytes() == getattr(same, name).tobytes()
-    assert path.energy.balance < 1e-10 and case.plot().axes[-1].get_ylabel() == "turn of the platform [mrad]"
+    assert path.energy.balance < 1e-12 and case.plot().axes[-1].get_ylabel() == "turn of the platform [mrad]"
 
 
 @pytest.mark.compiled

@@ -193,6 +193,8 @@ def test_a_run_removes_the_parts_of_an_older_one(tmp_path: Path) -> None:
     assert sorted(file.name for file in out.iterdir()) == [
         *("many.2.part.vtkhdf", "many.disc.part.vtkhdf", "many.mine.part.vtkhdf", "many.plate.vtkhdf")
     ]
+    run_parts(read_parts(other)[1:2], "many", out, picture=False)
+    assert [run.name for run in read_runs(out / "many")] == ["many.disc"]
     run_case(read_parts(other)[2].model_copy(update={"name": "many"}), out, picture=False)
     assert sorted(file.name for file in out.iterdir()) == [
         *("many.mine.part.vtkhdf", "many.part.vtkhdf", "many.plate.vtkhdf")
