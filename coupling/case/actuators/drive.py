@@ -89,7 +89,7 @@ class SegmentCase(Table):
     in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
-    """How far it rises from where it is; negative: down. Not with "hold"."""
+    """How far it goes from where it is; negative: down or clockwise. Not with "hold"."""
     frequency: Frequency | None = None
     """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"
@@ -136,7 +136,7 @@ class DriveCase(Table):
     ramp: Ramp = Field(default=0.0, examples=[3])
     """Cycles over which a "sine" or "cosine" grows from rest, and decays over the last of its cycles."""
     table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
-    """Instead of a stroke: heights at given times, with a smooth stroke from each to the next."""
+    """Instead of a stroke: where it is at given times, with a smooth stroke from each to the next."""
     segments: tuple[SegmentCase, ...] | None = None
     """Instead of a stroke: a schedule, one table after the other."""
     repeats: Repeats = 1

@@ -55,7 +55,7 @@ class TurnSegmentCase(SegmentCase):
     """A part of a schedule of turns, in rad, Hz and s."""
 
     stroke: Angle | None = Field(default=None, examples=["5 deg"])
-    """How far it turns from where it is; negative: clockwise. Not with "hold"."""
+    """How far it goes from where it is; negative: down or clockwise. Not with "hold"."""
 
 
 class TurnCase(DriveCase):
@@ -67,7 +67,7 @@ class TurnCase(DriveCase):
     stroke: Angle | None = Field(default=None, examples=["5 deg"])
     """How far it turns, counter-clockwise; negative: clockwise."""
     table: Angles | None = Field(default=None, examples=[[["0 ms", "0 deg"], ["1 ms", "5 deg"], ["3 ms", "2 deg"]]])
-    """Instead of a stroke: angles at given times, with a smooth stroke from each to the next."""
+    """Instead of a stroke: where it is at given times, with a smooth stroke from each to the next."""
     segments: tuple[TurnSegmentCase, ...] | None = None
     """Instead of a stroke: a schedule, one table after the other."""
 
