@@ -30,7 +30,7 @@ class Track:
     position : (k, 2) array
         Places, m; nan where x or y was not measured.
     heading : (k,) array, optional
-        Headings of a part with a footprint, rad, whole turns do not count; nan where it was not measured.
+        Headings of a part with a footprint, rad, up to whole turns; nan where it was not measured.
     noise : (float, float), optional
         Standard deviations of x or y, m, and heading, rad, whose ratio makes headings lengths beside places; by default
         the radius of gyration of the part's face does.

@@ -89,7 +89,7 @@ class SegmentCase(Table):
     in_template: ClassVar[tuple[str, ...]] = ("stroke", "frequency")
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
-    """How far it goes from where it is; negative: down or clockwise. Not with "hold"."""
+    """How far it goes from where it is; negative: the other way. Not with "hold"."""
     frequency: Frequency | None = None
     """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"

@@ -55,7 +55,7 @@ class TurnSegmentCase(SegmentCase):
     """A part of a schedule of turns, in rad, Hz and s."""
 
     stroke: Angle | None = Field(default=None, examples=["5 deg"])
-    """How far it goes from where it is; negative: down or clockwise. Not with "hold"."""
+    """How far it goes from where it is; negative: the other way. Not with "hold"."""
 
 
 class TurnCase(DriveCase):
