@@ -11,15 +11,15 @@ from scipy.optimize import brentq
 
 from coupling.case import Case
 from coupling.drives import travel
-from coupling.part import build_point
+from coupling.part import build_part
 from coupling.scene import PlateScene, Scene
-from particle import Micropart, Outcome, PartAtRest, SurfaceMotion, Trajectory, part_at_rest
+from particle import Body, Micropart, Outcome, PartAtRest, SurfaceMotion, Trajectory, part_at_rest
 from particle.drives import horizon
 from particle.friction import Contact
 
 FAR: Final = 1e-3  # of the surface's size: a part that is carried so far moves
 KEPT: Final = Outcome.STUCK, Outcome.MOVING
-LOST: Final = Outcome.DETACHED, Outcome.OVERLOADED, Outcome.LEFT_PLATE
+LOST: Final = Outcome.DETACHED, Outcome.OVERLOADED, Outcome.LEFT_PLATE, Outcome.TIPPED
 MAX_STROKES: Final = 85  # of the shortest, in which thresholds are looked for
 STEP: Final = math.log(1.25)  # between the logarithms of factors between which a threshold is looked for
 RANGE: Final = 64.0  # the largest factor
@@ -30,7 +30,7 @@ EXACT: Final = 1e-7  # of a threshold
 
 @dataclass(frozen=True)
 class Thresholds:
-    """From how many times the frequency or stroke a part at its start slips, and comes off or is overloaded.
+    """From how many times the frequency or stroke a part at its start slips, and comes off, tips or is overloaded.
 
     None: at none up to 64; 0: at any.
     """
@@ -52,7 +52,7 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
     """The thresholds of a part that its drives did not carry far, or did not keep; None where `why_none` says why."""
     if why_none(case, scene, trajectory):
         return None
-    rest = at_rest(case, scene.surface, build_point(case), friction)
+    rest = at_rest(case, scene.surface, build_part(case), friction)
     own = factors_of(lambda factor: driven(scene, rest, factor))
     if math.isclose(own.slips, own.comes_off, rel_tol=10 * EXACT):  # friction ends with contact
         own = own._replace(slips=own.comes_off)
@@ -67,15 +67,13 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
 
 def why_none(case: Case, scene: Scene, trajectory: Trajectory) -> str:
     """Why a part needs no other drives, or why no factor of its drives tells anything, in a sentence; else empty."""
-    if case.part.face is not None:
-        return "Thresholds are found for parts without a footprint."
     if all(travel(drive) == 0 for drive in (*scene.lifts, *scene.base)):
         return "No drive moves."
     if trajectory.outcome in (Outcome.LEFT_PLATE, Outcome.WORK_LIMIT):
         return trajectory.sentence
     if trajectory.outcome in KEPT and trajectory.distance > FAR * scene.surface.size:
         return "The part moves already, and stays on."
-    if any(case.part.velocity):
+    if any(case.part.velocity) or case.part.spin:
         return "The part is on the move from the start, and thresholds are those of a part at rest."
     if strokes_alone(scene) and stretches(scene):
         return "No factor scales the drives of a plate that stretches and has inertia."
@@ -92,12 +90,12 @@ def stretches(scene: Scene) -> bool:
     return isinstance(scene, PlateScene) and scene.stretch is not None
 
 
-def at_rest(case: Case, surface: SurfaceMotion, part: Micropart, friction: Contact) -> PartAtRest:
+def at_rest(case: Case, surface: SurfaceMotion, part: Micropart | Body, friction: Contact) -> PartAtRest:
     """A part that stays at its start, for as long as the drives take to repeat, or some strokes."""
     duration, repeated = case.run.duration, horizon(surface.drives, 0.0)
     shortest = float(surface.stroke_times.min(initial=duration))
     window = min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
-    return part_at_rest(surface, part, friction, window, case.run.gravity)
+    return part_at_rest(surface, part, friction, window, case.run.gravity, case.run.after_tipping == "stop")
 
 
 def driven(scene: Scene, rest: PartAtRest, factor: float, stroke: float = 1.0) -> PartAtRest:
@@ -121,15 +119,8 @@ def excess_pull(rest: PartAtRest) -> float:
 
 
 def excess_load(rest: PartAtRest) -> float:
-    """By how much the load leaves what contact bears, over the weight or so: the part is lost from 0 on."""
-    law, part = rest.part.law, rest.part
-    unit = part.mass * abs(part.gravity) + part.squeeze or part.mass
-    excess = -math.inf
-    if math.isfinite(law.pull_off):
-        excess = -(rest.smallest_load().value + law.pull_off) / unit
-    if math.isfinite(law.largest_load):
-        excess = max(excess, (rest.largest_load().value - law.largest_load) / unit)
-    return excess
+    """By how much contact is beyond its end, over about the weight: the part is lost from 0 on."""
+    return -rest.contact_margin().value
 
 
 def begins(

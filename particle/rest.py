@@ -9,16 +9,18 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from particle.body import Body, Face, new_body_memory, rest_margins
 from particle.drives import next_breakpoint
 from particle.events import Part, rest_loads
 from particle.friction import Contact, friction_limits
-from particle.simulation import Micropart, part_record
+from particle.simulation import Micropart, face_of, part_record
 from particle.surface import SurfaceMotion
 from particle.types import FloatArray
 
 PER_STROKE: Final = 48  # moments in the shortest stroke
 MAX_BREAKPOINTS, MAX_MOMENTS = 20_000, 400_000
 BLOCK: Final = 4096  # moments at a time
+TOLERANCE: Final = 1e-8  # for which points a face's surface is averaged over
 CANDIDATES, POINTS, ROUNDS = 8, 17, 7  # a bracket shrinks by 8 in a round
 ROUNDING: Final = 1e-9  # of the largest value: as large, but for rounding
 
@@ -35,49 +37,67 @@ class PartAtRest:
     """A part that stays at one place of a moving surface for a while; made by `part_at_rest`."""
 
     surface: SurfaceMotion
-    place: tuple[float, float]  # m
+    pose: tuple[float, float, float]  # m, m, rad
     part: Part = field(repr=False)
     times: FloatArray = field(repr=False)  # (n,) s, where to look for extremes first
+    face: Face | None = field(default=None, repr=False)
 
     def scaled(self, factor: float, stroke: float = 1.0) -> PartAtRest:
         """The same under drives `factor` times as fast over `stroke` times their heights (`SurfaceMotion.scaled`)."""
         return replace(self, surface=self.surface.scaled(factor, stroke), times=self.times / factor)
 
-    def loads_and_demands(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The net load (n,) and the force (n,) that it needs, N, as on a flat surface, at ascending times (n,) [s]."""
-        place = np.asarray(self.place, dtype=float)
+    def slip(self) -> Extreme:
+        """The largest force that holds the part over the largest that friction gives: from 1 on it slips."""
+        return largest(lambda times: self._signals(times)[0], self.times)
+
+    def contact_margin(self) -> Extreme:
+        """The smallest distance from the end of contact, over about the part's weight: below 0 it comes off or tips.
+
+        inf: the law bears any load.
+        """
+        value, time = largest(lambda times: -self._signals(times)[1], self.times)
+        return Extreme(-value, time)
+
+    def _signals(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What holds the part over what friction gives (n,), and the margin of contact (n,), at times (n,) [s]."""
+        if self.face is not None:
+            *place, heading = self.pose
+            cosine, sine = math.cos(heading), math.sin(heading)
+            points = self.face.places @ np.array([[cosine, sine], [-sine, cosine]]) + place
+            self.surface.samples(points, np.full(len(points), times[0]))  # builds the cells under the face
+            memory = new_body_memory(self.surface.record, self.face, np.zeros(1, dtype=np.int64))
+            found = rest_margins(self.surface.record, self.part, self.face, memory, *self.pose, times)
+            return found[:, 0], found[:, 1]
         loads, pulls = np.empty(len(times)), np.empty(len(times))
         for k in range(0, len(times), BLOCK):
             own = times[k : k + BLOCK]
-            points = self.surface.samples(np.broadcast_to(place, (len(own), 2)).copy(), own)
+            points = self.surface.samples(np.broadcast_to(self.pose[:2], (len(own), 2)).copy(), own)
             loads[k : k + BLOCK], pulls[k : k + BLOCK] = rest_loads(points, self.part)
-        return loads, self.part.mass * pulls
-
-    def slip(self) -> Extreme:
-        """The largest force that holds the part over the largest that friction gives: from 1 on it slips."""
-        return largest(lambda times: pull_ratios(self.part, *self.loads_and_demands(times)), self.times)
-
-    def smallest_load(self) -> Extreme:
-        """The smallest net load [N]: below minus the pull-off force the part comes off."""
-        value, time = largest(lambda times: -self.loads_and_demands(times)[0], self.times)
-        return Extreme(-value, time)
-
-    def largest_load(self) -> Extreme:
-        """The largest net load [N]."""
-        return largest(lambda times: self.loads_and_demands(times)[0], self.times)
+        law, unit = self.part.law, self.part.mass * abs(self.part.gravity) + self.part.squeeze or self.part.mass
+        margins = np.full(len(times), np.inf)
+        if math.isfinite(law.pull_off):
+            margins = (loads + law.pull_off) / unit
+        if math.isfinite(law.largest_load):
+            margins = np.minimum(margins, (law.largest_load - loads) / unit)
+        return pull_ratios(self.part, loads, self.part.mass * pulls), margins
 
 
 def part_at_rest(
     surface: SurfaceMotion,
-    part: Micropart,
+    part: Micropart | Body,
     friction: Contact,
     window: float,
     gravity: float | Sequence[float] = 9.80665,
-    place: tuple[float, float] | None = None,
+    tips: bool = True,
 ) -> PartAtRest:
-    """A part that stays at its start or another place [m] for a window [s] from the drives' start."""
-    moments = sample_times(surface, 0.0, window)
-    return PartAtRest(surface, place or part.position, part_record(surface, part, friction, gravity), moments)
+    """A part that stays at its start for a window [s] from the drives' start.
+
+    tips: whether the contact of a part with a face ends where an edge lifts.
+    """
+    x, y = part.position
+    pose = x, y, part.heading if isinstance(part, Body) else 0.0
+    record, moments = part_record(surface, part, friction, gravity), sample_times(surface, 0.0, window)
+    return PartAtRest(surface, pose, record, moments, face_of(part, TOLERANCE, tips))
 
 
 def pull_ratios(part: Part, loads: FloatArray, demands: FloatArray) -> FloatArray:

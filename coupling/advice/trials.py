@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import dataclass
+from functools import cache, cached_property, partial
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
 from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
-from coupling.part import build_friction, build_point, friction_law, local_size
+from coupling.part import build_friction, build_part, friction_law, local_size
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import doing, silent
 from coupling.result import Result
 from coupling.scene import PlateScene, lifts_of, plate_scene
 from coupling.summary import PlateSummary, Summary
-from particle import Micropart, State, SurfaceMotion, interruptible, simulate
+from particle import Body, Micropart, State, SurfaceMotion, interruptible, simulate
 from particle.friction import Contact, ScaledFriction
 
 # Factors of the strokes, in the order in which they are tried.
@@ -97,7 +97,7 @@ class Trials:
 
     def __init__(self, result: Result, largest_stroke: float) -> None:
         self.case, self.scene, self.largest_stroke, self.count = result.case, result.scene, largest_stroke, 0
-        self.friction, self.part = build_friction(self.case), build_point(self.case)
+        self.friction, self.part = build_friction(self.case), build_part(self.case)
         path, self.size = result.trajectory, self.scene.surface.size
         moved = path.distance if path.outcome in KEPT else 0.0
         self.least = max(NEAR * self.size, FARTHER * moved)  # m, by which a trial must move the part
@@ -130,7 +130,7 @@ class Trials:
         assert isinstance(case.plate, PlateCase)
         return plate_scene(ramped, case.plate, silent, scene.shapes).surface
 
-    def thresholds(self, part: Micropart, setting: Setting) -> Factors:
+    def thresholds(self, part: Micropart | Body, setting: Setting) -> Factors:
         """The thresholds of a part that stays at its start."""
         rest = at_rest(self.case, self.surface(setting), part, self.law(setting))
         return factors_of(lambda factor: driven(self.scene, rest, factor, setting.stroke))
@@ -157,7 +157,7 @@ class Trials:
                     return trial
         return _farthest(found)
 
-    def _farthest(self, part: Micropart, settings: Sequence[Setting]) -> Trial | None:
+    def _farthest(self, part: Micropart | Body, settings: Sequence[Setting]) -> Trial | None:
         """The trial that goes farthest of the first setting in which one goes far, or of all."""
         doubtful, most = list[Trial](), self.largest_stroke if self.rings else math.inf
         for setting in settings:
@@ -191,14 +191,15 @@ class Trials:
             yield from [Setting(stroke, friction) for friction in scales]
             yield from [Setting(stroke, plasticity=index) for index in more_plastic(self.case.friction)]
 
-    def trial(self, part: Micropart, factor: float, setting: Setting) -> Trial:
+    def trial(self, part: Micropart | Body, factor: float, setting: Setting) -> Trial:
         """A run; its distance is negative where the part is lost."""
         frequency, stroke = (1.0, factor) if self.rings else (factor, setting.stroke)
         surface, run = self.surface(setting).scaled(frequency, stroke), self.case.run
         duration = min(run.duration, TRIED * float(surface.stroke_times.min(initial=run.duration)))
         self.count += 1
         doing(f"Trial run {self.count}")
-        path = interruptible(simulate, surface, part, self.law(setting), duration, run.gravity, run.tolerance)
+        follow = partial(simulate, after_tipping=run.after_tipping)
+        path = interruptible(follow, surface, part, self.law(setting), duration, run.gravity, run.tolerance)
         load = float(path.normal_force[path.state != State.FLIGHT].min(initial=math.inf))
         load = 0.0 if math.isinf(load) else load
         kept = path.outcome in KEPT and (setting.pulled or load >= 0)
@@ -213,12 +214,13 @@ class Trials:
         assert isinstance(self.scene, PlateScene)
         points, outline, found = self.scene.shapes.points, self.scene.shapes.outline, list[Trial]()
         nearest = points[np.argmin(np.hypot(*(points - self.part.position).T))]
-        gap = float(outline.gap(nearest[None])[0])
+        gap, face = float(outline.gap(nearest[None])[0]), self.case.part.face
+        reach = face.reach if face else 0.0
         for x, y in [(r * math.cos(angle), r * math.sin(angle)) for r in RADII for angle in ANGLES]:
             place = float(f"{nearest[0] + gap * x:.3g}"), float(f"{nearest[1] + gap * y:.3g}")
-            if outline.gap(np.array([place]))[0] <= 0:  # a rim may be nearer than three digits tell
+            if outline.gap(np.array([place]))[0] <= reach:  # a rim may be nearer than three digits tell
                 continue
-            if trial := self._farthest(replace(self.part, position=place), settings):
+            if trial := self._farthest(build_part(self.case, place), settings):
                 found.append(trial)
                 if trial.distance > FAR * self.size:
                     return trial

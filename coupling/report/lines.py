@@ -162,7 +162,7 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
         load = quantity(margins.smallest_load, "N")
         texts.append(f"contact: the load falls to {load}, which only a law without pull-off bears")
     rows = [("margins" if n == 0 else "", text) for n, text in enumerate(texts)]
-    return rows if s.thresholds is None else [*rows, ("thresholds", threshold_text(s.thresholds))]
+    return rows if s.thresholds is None else [*rows, ("thresholds", threshold_text(s.thresholds, s.turned is not None))]
 
 
 def _slip(s: Summary, margin: Margin) -> str:
@@ -189,22 +189,23 @@ def _when(s: Summary, margin: Margin, does: str) -> str:
     return f"at {round(margin.time * MILLI, 9):.4g} ms, ({x:.4g}, {y:.4g}) {unit}{by}"
 
 
-def threshold_text(t: Thresholds) -> str:
-    """From where a part at rest slips and comes off, in a sentence."""
+def threshold_text(t: Thresholds, tips: bool) -> str:
+    """From where a part at rest slips and comes off, or tips, in a sentence."""
     slips, off, knob = t.slips_from, t.comes_off_from, f"the {t.knob}"
+    comes, come = ("comes off or tips", "come off or tip") if tips else ("comes off", "come off")
     slip = f"slips from {slips or 0.0:.4g} times {knob} on" if slips != 0 else f"slips at any {t.knob}"
     if off is None and slips is None:
-        does = f"neither slips nor comes off at up to {RANGE:g} times {knob}"
+        does = f"neither slips nor {comes} at up to {RANGE:g} times {knob}"
     elif off is None:
-        does = f"{slip} and does not come off at up to {RANGE:g} times"
+        does = f"{slip} and does not {come} at up to {RANGE:g} times"
     elif off == 0:
-        does = f"comes off even at {LEAST:.1g} times {knob}"
+        does = f"{comes} even at {LEAST:.1g} times {knob}"
     elif t.holds is not None:
         before = "before it slips" if slips is None or slips > off else "as soon as it slips"
         just = f"at {BEFORE:g} of that, the pull is {t.holds:.2g} of the friction limit"
-        does = f"comes off {before}, from {off:.4g} times {knob} on; {just}"
+        does = f"{comes} {before}, from {off:.4g} times {knob} on; {just}"
     else:
-        does = f"{slip}, and comes off from {off:.4g} times"
+        does = f"{slip}, and {comes} from {off:.4g} times"
     return f"At rest, with this friction, it {does}."
 
 

@@ -5,3 +5,4 @@ from particle.body.contact import face_states
 from particle.body.face import Face
 from particle.body.march import march_body
 from particle.body.memory import new_memory as new_body_memory
+from particle.body.rest import rest_margins

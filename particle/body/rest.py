@@ -10,15 +10,20 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from particle.body.averages import enter_all
 from particle.body.balance import least_pressure
 from particle.body.face import Face
 from particle.body.limit import gauge, needed
-from particle.body.memory import Memory
+from particle.body.memory import HEADING, Memory, X, Y
 from particle.body.state import contact_margin, settle
 from particle.events import Request
 from particle.events.mechanics import Part
 from particle.friction import friction_limit, friction_slope
-from particle.jit import device_no_arrays, inlined
+from particle.jit import device_no_arrays, inlined, jit
+from particle.surface import Surface
+from particle.types import FloatArray
 
 PER_STROKE, LEAST, MOST = 24, 4, 400  # moments looked at in the shortest stroke, and in a span
 SAFE = 0.85  # of the limit: how far below it a bound that is cheaper than the gauge may stand for it
@@ -49,6 +54,37 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
     else:
         bound = gauge(part, face, b, s) - 1.0
     return max(bound, -margin)
+
+
+@jit
+def rest_margins(
+    surface: Surface, part: Part, face: Face, memory: Memory, x: float, y: float, heading: float, times: FloatArray
+) -> FloatArray:
+    """Of a part that stays at (x, y) [m]: the gauge of what holds it, and the contact's margin; (n, 2), at times [s].
+
+    The gauge is inf where contact has ended and anything pulls at the part; both are nan off the plate.
+    """
+    out = np.full((len(times), 2), np.nan)
+    b, s, state, end = memory.balance[0], memory.search[0], memory.step[0].state, -math.inf
+    state[:] = 0.0
+    state[X], state[Y], state[HEADING] = x, y, heading
+    for k in range(len(times)):
+        time = times[k]
+        if not time < end:
+            cell, end = enter_all(surface, memory.local, memory.slots, face, x, y, heading, time, math.inf, (0.0, 0.0))
+            if cell < 0:
+                return out
+        if not settle(part, face, memory, state, time):
+            continue
+        margin = contact_margin(part, face, memory)
+        needed(b, s.needed)
+        pulled = abs(s.needed[0]) + abs(s.needed[1]) + abs(s.needed[2]) > 0.0
+        if margin >= 0.0:
+            out[k, 0] = gauge(part, face, b, s)
+        else:
+            out[k, 0] = math.inf if pulled else 0.0
+        out[k, 1] = margin
+    return out
 
 
 @inlined

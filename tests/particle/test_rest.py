@@ -5,7 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, part_at_rest, platform_surface
+from particle import (
+    Body,
+    ConstantFriction,
+    CoulombAdhesion,
+    Drive,
+    Footprint,
+    Micropart,
+    part_at_rest,
+    platform_surface,
+)
 from particle import polynomial_surface as polynomial
 from particle.rest import largest
 
@@ -32,8 +41,7 @@ def test_a_platform_that_rises_and_falls_loads_by_its_acceleration(factor):
     drive = Drive(2e-6, 300, "cosine")
     rest = part_at_rest(platform_surface(z=drive), PART, CoulombAdhesion(0.3, 2e-7), 20e-3)
     swing = MASS * amplitude(drive) * factor**2
-    assert rest.scaled(factor).smallest_load().value == pytest.approx(MASS * G - swing, rel=1e-8)
-    assert rest.scaled(factor).largest_load().value == pytest.approx(MASS * G + swing, rel=1e-8)
+    assert rest.scaled(factor).contact_margin().value == pytest.approx(1 + (2e-7 - swing) / (MASS * G), rel=1e-8)
     assert rest.scaled(factor).slip().value == 0
 
 
@@ -48,14 +56,14 @@ def test_a_tilting_plane_beside_brute_force():
     slip = rest.slip()
     assert slip.value == pytest.approx(ratio.max(), rel=1e-11)
     assert slip.time == pytest.approx(t[ratio.argmax()], abs=1e-5)
-    load = rest.smallest_load()
-    assert load.value == pytest.approx((MASS * b / s).min(), rel=1e-11)
+    margin = rest.contact_margin()
+    assert margin.value == pytest.approx((b / s + 1e-8 / MASS).min() / G, rel=1e-11)
 
 
 def test_a_part_that_has_come_off_is_held_by_nothing():
     drive = Drive(5e-6, 1000)
     rest = part_at_rest(platform_surface(x=drive, z=drive), PART, CoulombAdhesion(0.3, 1e-9), 2e-3)
-    assert rest.smallest_load().value < -1e-9
+    assert rest.contact_margin().value < 0
     assert rest.slip().value == math.inf
 
 
@@ -74,3 +82,26 @@ def test_scaled_drives_are_those_of_another_frequency_and_stroke():
     np.testing.assert_allclose(one.drives.jump, two.drives.jump, rtol=1e-12)
     np.testing.assert_allclose(one.drives.rough, two.drives.rough, rtol=1e-12)
     assert one.stroke_times.min() == pytest.approx(two.stroke_times.min(), rel=1e-14)
+
+
+def test_a_face_on_a_platform_slips_turns_and_tips_at_closed_forms():
+    side, height, law = 100e-6, 10e-6, CoulombAdhesion(0.4, 1e-8)
+    square, press = Footprint.rectangle(side, side), MASS * G + 1e-8
+
+    def body(footprint, heading=0.0):
+        return Body(footprint, 2 * height, MASS, position=(0.0, 0.0), heading=heading)
+
+    sway, turn = Drive(1e-6, 500, "sine"), Drive(2e-3, 500, "sine")
+    pushed = part_at_rest(platform_surface(x=sway), body(square, math.pi / 4), law, 4e-3)
+    force = MASS * amplitude(sway)
+    assert pushed.slip().value == pytest.approx(force / (0.4 * press), rel=1e-7)
+    # Across its diagonal a square's least pressure falls by 6 sqrt(2) / side times the shift of what presses.
+    least = (press - force * height * 6 * math.sqrt(2) / side) / (MASS * G)
+    assert pushed.contact_margin().value == pytest.approx(least, rel=1e-7)
+    upright = part_at_rest(platform_surface(x=sway), body(square), law, 4e-3)
+    assert upright.contact_margin().value == pytest.approx((press - force * height * 6 / side) / (MASS * G), rel=1e-7)
+    disc = body(Footprint.disc(side / 2))
+    turned = part_at_rest(platform_surface(turn=turn), disc, law, 4e-3)
+    torque = MASS * (side / 2) ** 2 / 2 * amplitude(turn)
+    assert turned.slip().value == pytest.approx(torque / (0.4 * press * side / 3), rel=1e-7)
+    assert turned.scaled(2.0, 0.5).slip().value == pytest.approx(2 * turned.slip().value, rel=1e-7)

@@ -111,10 +111,8 @@ def feasibility(
     most = spans[1] * stroke if largest is None else largest
     if not case.actuators:
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
-    if case.part.face is not None:
-        raise ValueError("Input case of feasibility must have a part without a footprint: it is found for points")
-    if case.part.local_contact:
-        raise ValueError("Input case of feasibility must have part.local_contact = false: surfaces are flat there")
+    if areas and (case.part.face is not None or case.part.local_contact):
+        raise ValueError("Input areas of feasibility must be false with part.footprint or part.local_contact")
     if not frequency:
         raise ValueError("Input case of feasibility must have a drive that moves; got none")
     if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):

@@ -46,7 +46,7 @@ def find_slip(ground: Ground, frequency: float, strokes: tuple[float, float], gu
 
     inf: not up to the largest of `strokes`; their smallest where it slips at that.  guess: where to begin.
     """
-    if any(ground.case.part.velocity):
+    if any(ground.case.part.velocity) or ground.case.part.spin:
         return strokes[0]  # it is on the move from the start
     bottom, top = map(math.log, strokes)
     start = min(max(math.log(guess), bottom), top)

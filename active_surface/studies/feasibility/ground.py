@@ -19,7 +19,7 @@ from coupling import (
     answers_drives,
     build_drives,
     build_friction,
-    build_point,
+    build_part,
     build_scene,
     follow,
     shared_surface,
@@ -85,12 +85,14 @@ class Ground:
         key = (*driven, window)
         if key not in self._rests:
             surface = self.driven(*driven, window)
-            self._rests[key] = part_at_rest(surface, build_point(case), self.friction, window, case.run.gravity)
+            self._rests[key] = part_at_rest(
+                surface, build_part(case), self.friction, window, case.run.gravity, case.run.after_tipping == "stop"
+            )
         return self._rests[key].scaled(frequency / driven[0], stroke / driven[1])
 
     def paths(self, factors: Sequence[tuple[float, float]], threads: int | None = None) -> list[Trajectory]:
         """The part's paths at factors (frequency, stroke); each ends where it comes off."""
-        surface, part = self.surface, build_point(self.case)
+        surface, part = self.surface, build_part(self.case)
         if isinstance(surface, AnsweringSurface):
             surface = surface.until(self.duration)
         run = self.case.run.model_copy(update={"duration": self.duration, "after_detachment": "stop"})

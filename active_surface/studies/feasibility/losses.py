@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from coupling import borders
+from coupling import borders, least_pressure
 from meshes import Outline
 from particle import Trajectory
 from particle.friction import Contact
@@ -49,9 +49,9 @@ def find_losses(run: Callable[[Sequence[float]], Sequence[float]], slips: float,
 
 
 def margin_of(path: Trajectory, friction: Contact, outline: Outline) -> float:
-    """How near a path came to losing the part, from 1 to 0, at which it is lost: by pull-off, overload and the rim.
+    """How near a path came to losing the part, from 1 to 0, at which it is lost.
 
-    Between the path's steps it may have been nearer.
+    By pull-off, tipping, overload and the rim. Between the path's steps it may have been nearer.
     """
     if path.outcome in borders.LOST:
         return 0.0
@@ -59,6 +59,9 @@ def margin_of(path: Trajectory, friction: Contact, outline: Outline) -> float:
     shares = [float(gap.min() / gap[0])]
     if math.isfinite(law.pull_off):
         shares.append(float((load.min() + law.pull_off) / (load[0] + law.pull_off)))
+    if path.pressure_margin is not None:
+        pressed = least_pressure(path.pressure_margin, load, friction)
+        shares.append(float(np.nanmin(pressed, initial=math.inf) / pressed[0]) if pressed[0] > 0 else math.inf)
     if math.isfinite(law.largest_load):
         shares.append(float((law.largest_load - load.max()) / (law.largest_load - load[0])))
     return float(np.clip(min(shares), 1e-9, 1.0))

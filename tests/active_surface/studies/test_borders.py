@@ -56,13 +56,23 @@ def case_of(kind):
         plate = DISC | {"inertia": True}
         actuators = [one[0].model_copy(update={"stroke": 2e-6, "frequency": 8000.0})]
     duration = {"von-karman": 2e-3, "inertia": 4e-4}.get(kind, 7.5e-3)
+    part = PartCase(mass=2e-9, position=(-90e-6, 30e-6))
+    if kind == "face":
+        part = PartCase(
+            mass=2e-9,
+            position=(-90e-6, 30e-6),
+            footprint="rectangle",
+            sides=(90e-6, 60e-6),
+            thickness=40e-6,
+            heading=0.5,
+        )
     return Case(
-        plate=plate, actuators=actuators, part=PartCase(mass=2e-9, position=(-90e-6, 30e-6)), friction=law,
+        plate=plate, actuators=actuators, part=part, friction=law,
         run=RunCase(duration=duration), name=kind,
     )  # fmt: skip
 
 
-FAST, SLOW = ("constant", "coulomb", "kogut-etsion", "array"), ("von-karman", "inertia")
+FAST, SLOW = ("constant", "coulomb", "kogut-etsion", "array", "face"), ("von-karman", "inertia")
 
 
 def ground_of(case, frequencies, strokes):
