@@ -13,7 +13,7 @@ from sweeps import PLATE as OF_TWO
 from common import quantity
 from coupling import report, run_case
 from coupling.advice import Setting, Trial, Trials, advice_text, advise, advised_case, no_advice
-from coupling.borders import begins, why_none
+from coupling.borders import begins, thresholds_of, why_none
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -31,6 +31,7 @@ from coupling.case import (
     scaled_friction,
     with_index,
 )
+from coupling.drives import build_drives
 from coupling.margins import PathLoads, _actuators, event_actuators, margins_of
 from coupling.run import build_friction, follow_part
 from coupling.summary import summary_of
@@ -166,6 +167,29 @@ def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
     assert f"{thresholds.comes_off_from:.4g} times" in dict(report.lines(stuck.summary))["thresholds"]
     assert f"moves it by {quantity(trial.distance, 'm')} in" in advice_text(stuck, trial)
     assert summary_of(json.loads(json.dumps(stuck.summary.as_dict()))) == stuck.summary
+
+
+@pytest.mark.parametrize("thickness, end", [(40e-6, None), (200e-6, Outcome.TIPPED)])
+def test_thresholds_of_a_face_are_where_its_runs_slip_and_tip(base, thickness, end):
+    face = {"footprint": "rectangle", "sides": (9e-5, 6e-5), "thickness": thickness, "heading": 0.4}
+    part = PartCase(mass=2e-9, position=(1e-4, 5e-5), **face)
+    case = case_of(part=part, stroke=5e-6, frequency=300, run=RunCase(duration=7e-3))
+    scene = replace(base.scene, lifts=(lifts := build_drives(case)), surface=base.scene.surface.driven_by(lifts))
+    friction = build_friction(case)
+    thresholds = thresholds_of(case, scene, follow_part(case, scene.surface, friction), friction)
+
+    def run(factor):
+        return follow_part(case, scene.surface.scaled(factor), friction)
+
+    if end is None:
+        assert 1 < thresholds.slips_from < thresholds.comes_off_from
+        for share, slips in ((0.9999, False), (1.0001, True)):
+            kinds = [event.kind for event in run(thresholds.slips_from * share).events]
+            assert (EventKind.SLIPS in kinds) == slips
+    else:
+        assert thresholds.comes_off_from <= thresholds.slips_from
+        ends = [run(thresholds.comes_off_from * share).outcome for share in (0.9999, 1.0001)]
+        assert ends == [Outcome.STUCK, end]
 
 
 def test_a_border_is_found_from_any_start_or_lies_beyond_an_end():
