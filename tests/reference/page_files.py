@@ -57,6 +57,15 @@ values = ["60 um", "100 um", "400 um"]
 [map]
 threshold = "distance > 1 um"
 """
+TURNS = """\
+[study]
+case = "faced.toml"
+
+[[axes]]
+field = "part.heading"
+name = "heading"
+values = ["30 deg", "-75 deg"]
+"""
 
 
 def data_of(page):

@@ -41,6 +41,7 @@ RIM_STAYS = (
     "cell_size",
     "top_face",
 )
+FACE_OF = ("footprint", "sides", "radius", "corners")
 STOPS = 9  # of the colour scale
 
 
@@ -55,6 +56,7 @@ def study_data(study: Study, selection: Selection, starts: FloatArray, paths: Pa
     unit = unit_for(finite if len(finite) else np.zeros(1), "m")
     cells = {number: cell for cell, number in enumerate(selection.numbers[..., 0].ravel().tolist())}
     lines = sorted((cells[number], line) for number, line in paths.lines.items())
+    headings = [heading for _, heading in sorted((cells[number], turn) for number, turn in paths.headings.items())]
     every = np.concatenate([line for _, line in lines]) if lines else np.empty((0, 2))
     return {
         "kind": "points" if selection.findings.scattered else "map" if len(selection.axes) == 2 else "curve",
@@ -78,6 +80,7 @@ def study_data(study: Study, selection: Selection, starts: FloatArray, paths: Pa
             "cells": packed([cell for cell, _ in lines], "u4"),
             "stops": packed(np.cumsum([len(line) for _, line in lines]), "u4"),
             "points": packed_rows(every.T * along.per_si),
+            **({"headings": packed(headings, "f4")} if headings else {}),
         },
         "drawing": _drawing(study, along),
     }
@@ -105,7 +108,7 @@ def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
 
 
 def _drawing(study: Study, along: Unit) -> dict[str, Any]:
-    """Rim and actuators, but for those that the axes move."""
+    """Rim, actuators and the part's face, but for those that the axes move."""
     case: Case = study.case
     moved = [location for axis in study.points.axes for location in axis.field.locations]
     rim: list[Any] = []
@@ -119,4 +122,11 @@ def _drawing(study: Study, along: Unit) -> dict[str, Any]:
     )
     places = [actuator.position for actuator in case.actuators]
     drawn = places if stay and len(places) <= MAX_ACTUATORS else []
-    return {"rim": rim, "actuators": packed(np.array(drawn).reshape(-1, 2) * along.per_si, "f4")}
+    face = case.part.face
+    if any(location[0] == "part" and location[1] in FACE_OF for location in moved):
+        face = None
+    return {
+        "rim": rim,
+        "actuators": packed(np.array(drawn).reshape(-1, 2) * along.per_si, "f4"),
+        **({} if face is None else {"face": (face.outline((0.0, 0.0), 0.0) * along.per_si).tolist()}),
+    }

@@ -26,6 +26,7 @@ class Paths(NamedTuple):
 
     lines: dict[int, FloatArray]  # by the path's number: (q, 2) m
     strangers: int  # how many end elsewhere than the sweep says
+    headings: dict[int, FloatArray]  # (2,) rad at start and end, of parts with a face
 
 
 def usual_count(engine: Engine) -> int:
@@ -51,6 +52,7 @@ def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Progre
     order = np.argsort(numbers[known_ends])
     known = dict(zip(numbers[known_ends].tolist(), ends[known_ends], strict=True))
     lines: dict[int, FloatArray] = {}
+    headings: dict[int, FloatArray] = {}
     strangers = 0
 
     def keep(number: int, path: Trajectory) -> None:
@@ -58,8 +60,10 @@ def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Progre
         samples = path.at(np.linspace(0, path.time[-1], SAMPLES)).position
         size = extent(samples)
         lines[number] = thinned(samples, SEEN * size)
+        if path.heading is not None:
+            headings[number] = path.heading[[0, -1]]
         strangers += float(np.abs(samples[-1] - known[number]).max()) > SAME * max(size, MIN_SIZE)
         tell(len(lines), len(known))
 
     engine.follow(numbers[known_ends][order].tolist(), keep)
-    return Paths(lines, strangers)
+    return Paths(lines, strangers, headings)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from page_files import CASE, STUDY, data_of, numbers
+from page_files import CASE, FACED, STUDY, TURNS, data_of, numbers
 
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
@@ -15,7 +15,14 @@ from active_surface.studies.read import read_sweep
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.study_page import write_study_page
 from active_surface.views.pages.sweep_paths import Paths
-from coupling import read_case
+from coupling import read_case, run_case
+
+CORNERS = """
+[[axes]]
+field = "part.corners.0.0"
+name = "corner"
+values = ["0 um"]
+"""
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +78,19 @@ def test_the_page_of_a_sweep_has_its_map_and_its_paths(folder, sweep):
     assert data["outline"] and data["threshold"]
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(("axis", "drawn"), [("", True), (CORNERS, False)])
+def test_of_a_part_with_a_face_the_page_has_headings_and_its_outline_unless_the_axes_change_it(tmp_path, axis, drawn):
+    (tmp_path / "faced.toml").write_text(FACED)
+    (tmp_path / "turns.toml").write_text(TURNS + axis)
+    study = read_study(tmp_path / "turns.toml")
+    data = data_of(write_study_page(study, run_study(study).dataset, tmp_path / "turns.html"))
+    ends = [run_case(study.case.vary({"part.heading": text})).trajectory.heading[-1] for text in ("-75 deg", "30 deg")]
+    headings = numbers(data["paths"]["headings"]).reshape(2, 2)
+    assert headings == pytest.approx(np.column_stack([np.radians([-75, 30]), ends]), rel=1e-6)
+    assert ("face" in data["drawing"]) is drawn
+
+
 @pytest.mark.parametrize(("count", "cells"), [(0, []), (4, [0, 1, 3, 4, 6, 7]), (1, [4])])
 def test_a_page_has_no_more_paths_than_asked(folder, sweep, count, cells):
     found = data_of(write_study_page(read_study(folder / "many.toml"), sweep, folder / "few.html", count))
@@ -84,7 +104,7 @@ def test_of_many_ends_the_first_are_kept_and_the_repeats_stated(folder, sweep, m
     shown = replace(shown, end=np.repeat(shown.end, 3, axis=-2))
     for most, kept in ((27, 3), (26, 1)):
         monkeypatch.setattr("active_surface.views.pages.study_data.MAX_ENDS", most)
-        data = study_data(study, shown, np.zeros((3, 3, 2)), Paths({}, 0))
+        data = study_data(study, shown, np.zeros((3, 3, 2)), Paths({}, 0, {}))
         assert (data["repeats"], data["kept"], len(numbers(data["ends"]))) == (3, kept, 18 * kept)
 
 

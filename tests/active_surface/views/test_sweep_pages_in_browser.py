@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from page_files import FACED, TURNS
 
 from active_surface.studies import read_study, run_study
 from active_surface.views.pages.study_page import write_study_page
+from coupling import read_case, run_case
 
 pytest.importorskip("selenium", reason="selenium is not installed")
 from page_browser import CASE, changed, chromium, opening, pixels, readout, reddish, wait  # noqa: E402
@@ -57,7 +59,16 @@ def pages(tmp_path_factory):
         "few": write_study_page(study, found.dataset, folder / "few.html", 3),
         "none": write_study_page(study, found.dataset, folder / "none.html", 0),
         "repeats": repeated(folder),
+        "faced": turning(folder),
     }
+
+
+def turning(folder):
+    """The page of a sweep over the heading of a part with a face."""
+    (folder / "faced.toml").write_text(FACED)
+    (folder / "turns.toml").write_text(TURNS)
+    study = read_study(folder / "turns.toml")
+    return write_study_page(study, run_study(study).dataset, folder / "turns.html")
 
 
 def repeated(folder):
@@ -127,6 +138,18 @@ def test_cells_are_chosen_by_keys_and_the_map_shows_outcomes(open_page):
     browser.find_element(By.CSS_SELECTOR, "[data-value=outcome]").click()
     wait(lambda: changed(before, pixels(browser, "map")) > 0.05)
     assert "stuck" in browser.find_element(By.ID, "outcome-key").text
+
+
+def test_a_path_of_a_part_with_a_face_has_its_outline_at_both_ends(open_page, pages):
+    browser = open_page("faced")
+    browser.find_element(By.ID, "picker-0").send_keys(Keys.HOME)
+    wait(lambda: readout(browser)["heading"].startswith("\N{MINUS SIGN}75"))
+    x, y = browser.execute_script("const { x, y } = element('path').data[1]; return [x, y]")
+    case = read_case(pages["faced"].with_name("faced.toml")).vary({"part.heading": "-75 deg"})
+    path, face = run_case(case).trajectory, case.part.face
+    for first, k in ((0, 0), (11, -1)):
+        outline = face.outline(path.position[k], path.heading[k]) * 1e6
+        assert np.column_stack([x, y])[first : first + 6].astype(float) == pytest.approx(outline, abs=1e-3)
 
 
 def test_a_page_without_paths_does_not_speak_of_any(open_page):

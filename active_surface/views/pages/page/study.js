@@ -10,10 +10,10 @@ let chosen = 0, value = "distance";
 
 function unpackPaths(packed) {
   const cells = unpack(packed.cells), stops = unpack(packed.stops), [x, y] = unpackRows(packed.points);
-  const found = new Map();
+  const found = new Map(), headings = packed.headings ? unpack(packed.headings) : [];
   cells.forEach((cell, k) => {
     const begin = k ? stops[k - 1] : 0;
-    found.set(cell, { x: x.subarray(begin, stops[k]), y: y.subarray(begin, stops[k]) });
+    found.set(cell, { x: x.subarray(begin, stops[k]), y: y.subarray(begin, stops[k]), headings: headings.slice(2 * k, 2 * k + 2) });
   });
   return found;
 }
@@ -53,16 +53,20 @@ function addPickers() {
 }
 
 function pathTraces(cell) {
-  const { rim, actuators } = pageData.drawing, places = unpack(actuators), traces = rim.length ? [rimTrace(rim)] : [];
+  const { rim, actuators, face } = pageData.drawing, places = unpack(actuators), traces = rim.length ? [rimTrace(rim)] : [];
   if (places.length) traces.push({ ...LOOKS.actuator, ...pairs(places) });
   const start = { x: [starts[2 * cell]], y: [starts[2 * cell + 1]] }, of = ends.subarray(2 * kept * cell, 2 * kept * (cell + 1));
   const path = paths.get(cell), straight = { x: [start.x[0], of[0]], y: [start.y[0], of[1]] }, isFirst = Number.isFinite(of[0]);
-  if (isFirst && path) traces.push({ ...LOOKS.path, ...path });
+  if (isFirst && path) traces.push({ ...LOOKS.path, x: path.x, y: path.y });
   else if (isFirst) traces.push({ ...LOOKS.path, ...straight, name: "from start to end", line: { color: PATH, width: 1.5, dash: "dot" } });
   if (kept > 1 && of.some(Number.isFinite)) {
     traces.push({ ...pairs(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: colour("accent"), opacity: 0.6 } });
   }
   if (!isFirst) return traces; // the first start was refused
+  if (path && face) {
+    const lines = [[start.x[0], start.y[0]], of].flatMap((place, k) => faceAt(face, place, path.headings[k]).flatMap((line) => [...line, [null, null]]));
+    traces.push({ ...LOOKS.rim, x: lines.map(([x]) => x), y: lines.map(([, y]) => y) });
+  }
   return [...traces, { ...LOOKS.start, ...start }, { ...LOOKS.end, x: [of[0]], y: [of[1]] }];
 }
 
