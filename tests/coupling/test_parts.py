@@ -179,7 +179,12 @@ def test_files_of_many_parts(tmp_path: Path) -> None:
     assert data["name"] == "square" and [one["name"] for one in data["others"]] == names[1:]
     for one, run in zip(data["others"], runs[1:], strict=True):
         x = np.frombuffer(base64.b64decode(one["x"]["bytes"]), "<f4") * 1e-6
-        assert x == pytest.approx(path_of(run.case).at(times).position[:, 0], abs=1e-8)
+        there = path_of(run.case).at(times)
+        assert x == pytest.approx(there.position[:, 0], abs=1e-8)
+        assert ("face" in one) is (run.case.part.face is not None)
+        if "face" in one:
+            heading = np.frombuffer(base64.b64decode(one["heading"]["bytes"]))
+            assert heading == pytest.approx(there.heading, abs=1e-6) and np.hypot(*one["face"][0]) == pytest.approx(50)
     low, high = (limit(runs[0].points, axis=0) for limit in (np.min, np.max))
     assert all((low < run.position[:, :2]).all() and (run.position[:, :2] < high).all() for run in runs)
 

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
+from coupling.pictures import samples_of
 from coupling.results import SavedRun
 
 MAX_MOMENTS: Final = 1000  # of a page; of more steps, as many evenly spread as leave room for the events
@@ -56,6 +57,17 @@ def moments_of(run: SavedRun) -> Moments:
         at_event=order >= len(steps),
         steps=np.concatenate([np.repeat(steps[:, None], NEIGHBOURS, axis=1), around])[order],
         weights=np.concatenate([alone, weights])[order],
+    )
+
+
+def beside(run: SavedRun, moments: Moments) -> Moments:
+    """The same moments with place, state and heading of another part over the same surface."""
+    known, rows = samples_of(run), run.rows
+    x, y, z = (np.interp(moments.time, known.time, values) for values in (*known.position.T, known.height))
+    return moments._replace(
+        position=np.column_stack([x, y, z]),
+        state=known.state[np.searchsorted(known.time, moments.time, side="right") - 1],
+        heading=None if rows.heading is None else np.interp(moments.time, rows.time, rows.heading),
     )
 
 

@@ -12,13 +12,13 @@ from matplotlib.colors import Normalize, to_hex
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.geometry import Spots, coarse, cut_in, exaggeration, inside, outer_edges, spots_of
 from active_surface.views.modes import modes_of
-from active_surface.views.pages.moments import MAX_EVENTS, Moments, heights_at, moments_of
+from active_surface.views.pages.moments import MAX_EVENTS, Moments, beside, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
 from active_surface.views.result_file import part_of
 from common import Unit, unit_for
 from coupling import report
-from coupling.pictures import MARKS, PARTS_COLOURS, Scale, path_window, samples_of
+from coupling.pictures import MARKS, PARTS_COLOURS, Scale, path_window
 from coupling.results import SavedRun
 from fem_plate import extent
 from particle import EventKind, State, stretches
@@ -37,9 +37,10 @@ COLOURS: Final = 11  # stops of the colour scale
 def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
     """What the programs of the page read; others: over the same surface, whose parts are shown as well."""
     moments = moments_of(run)
-    outlines = _outlines(run, moments)
-    others_at = [one.rows.position for one in others]
-    way = np.concatenate([moments.position[:, :2], outlines.reshape(-1, 2), *others_at])
+    also = [(one, beside(one, moments)) for one in others]
+    ways = [one.rows.position for one in others]
+    ways += [_outlines(one, there).reshape(-1, 2) for one, there in [(run, moments), *also]]
+    way = np.concatenate([moments.position[:, :2], *ways])
     points, triangles = _around(run.points, run.triangles, way)
     heights = heights_at(run, moments, points)
     place = run.points[points]
@@ -52,8 +53,7 @@ def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     box = np.stack([place.min(axis=0), place.max(axis=0)])
-    reached = np.concatenate([run.rows.position, outlines.reshape(-1, 2), *others_at])
-    window = path_window(reached, box, run.actuators)
+    window = path_window(np.concatenate([run.rows.position, *ways]), box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     marked = np.flatnonzero(points < len(run.actuators))
     in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
@@ -91,12 +91,12 @@ def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
             "speed": packed(np.hypot(*moments.velocity.T) * speed.per_si, "f4"),
             "state": packed(moments.state, "u1"),
             "below": _spots(spots),
-            **_face(run, moments, _planes(place, triangles, heights, position, outlines), along, scale.unit),
+            **_face(run, moments, place, triangles, heights, along, scale.unit),
         },
         "name": part_of(run) if others else "part",
         "others": [
-            _beside(one, colour, moments.time, heights, place, triangles, along, scale)
-            for one, colour in zip(others, cycle(PARTS_COLOURS[1:]), strict=False)
+            _beside(one, there, colour, heights, place, triangles, along, scale.unit)
+            for (one, there), colour in zip(also, cycle(PARTS_COLOURS[1:]), strict=False)
         ],
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
@@ -112,23 +112,22 @@ def run_data(run: SavedRun, others: Sequence[SavedRun] = ()) -> dict[str, Any]:
 
 def _beside(
     run: SavedRun,
+    moments: Moments,
     colour: str,
-    times: FloatArray,
     heights: FloatArray,
     place: FloatArray,
     triangles: IntArray,
     along: Unit,
-    scale: Scale,
+    up: Unit,
 ) -> dict[str, Any]:
-    """Another part at the moments (k,) [s] of the page, at which points (n, 2) [m] have heights (k, n) [m]."""
-    known = samples_of(run)
-    x, y, z = (np.interp(times, known.time, values) for values in (*known.position.T, known.height))
-    spots = spots_of(place, triangles, np.column_stack([x, y]))
-    flies = known.state[np.searchsorted(known.time, times, side="right") - 1] == State.FLIGHT
-    drawn = np.where(flies, z, spots.heights(heights))
-    places = {"x": x * along.per_si, "y": y * along.per_si, "z": drawn * scale.unit.per_si}
+    """Another part at the moments (k,) of the page, at which points (n, 2) [m] have heights (k, n) [m]."""
+    x, y, z = moments.position.T
+    spots = spots_of(place, triangles, moments.position[:, :2])
+    drawn = np.where(moments.state == State.FLIGHT, z, spots.heights(heights))
+    places = {"x": x * along.per_si, "y": y * along.per_si, "z": drawn * up.per_si}
     packed_places = {key: packed(values, "f4") for key, values in places.items()}
-    return {"name": part_of(run), "colour": colour, **packed_places, "below": _spots(spots)}
+    face = _face(run, moments, place, triangles, heights, along, up)
+    return {"name": part_of(run), "colour": colour, **packed_places, "below": _spots(spots), **face}
 
 
 def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
@@ -190,11 +189,20 @@ def _planes(
     return np.asarray((np.linalg.pinv(around) @ z[..., None])[..., 0])
 
 
-def _face(run: SavedRun, moments: Moments, planes: FloatArray, along: Unit, up: Unit) -> dict[str, Any]:
-    """A part's face, how far it is turned [rad] and on which planes (k, 3) it lies; of a point nothing."""
+def _face(
+    run: SavedRun,
+    moments: Moments,
+    points: FloatArray,
+    triangles: IntArray,
+    heights: FloatArray,
+    along: Unit,
+    up: Unit,
+) -> dict[str, Any]:
+    """A part's face, how far it is turned [rad] and on which planes it lies; of a point nothing."""
     face = run.case.part.face
     if face is None or moments.heading is None:
         return {}
+    planes = _planes(points, triangles, heights, moments.position, _outlines(run, moments))
     return {
         "face": (face.outline((0.0, 0.0), 0.0) * along.per_si).tolist(),
         "heading": packed(moments.heading, "f8"),

@@ -92,6 +92,9 @@ def test_the_outline_of_a_face_is_to_scale_and_turned_at_the_last_step(open_page
     browser.execute_script("show(0)")
     drawn(browser)
     assert readout(browser)["heading"] == "30.0 degrees"
+    scene = browser.find_element(By.ID, "surface")
+    legend, bar = (scene.find_element(By.CLASS_NAME, name).rect for name in ("legend", "modebar-group"))
+    assert legend["y"] >= bar["y"] + bar["height"]
 
 
 def test_it_plays_to_the_end_and_pauses(open_page):

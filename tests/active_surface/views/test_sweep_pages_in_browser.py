@@ -143,8 +143,10 @@ def test_cells_are_chosen_by_keys_and_the_map_shows_outcomes(open_page):
 def test_a_path_of_a_part_with_a_face_has_its_outline_at_both_ends(open_page, pages):
     browser = open_page("faced")
     browser.find_element(By.ID, "picker-0").send_keys(Keys.HOME)
-    wait(lambda: readout(browser)["heading"].startswith("\N{MINUS SIGN}75"))
-    x, y = browser.execute_script("const { x, y } = element('path').data[1]; return [x, y]")
+    assert readout(browser)["heading"] == "\N{MINUS SIGN}1.309 rad"
+    x, y = browser.execute_async_script(
+        "choose(chosen).then(() => { const { x, y } = element('path').data[1]; arguments[0]([x, y]); })"
+    )
     case = read_case(pages["faced"].with_name("faced.toml")).vary({"part.heading": "-75 deg"})
     path, face = run_case(case).trajectory, case.part.face
     for first, k in ((0, 0), (11, -1)):

@@ -20,12 +20,16 @@ let closeBy = false, exaggeration = 1, shown = 0;
 function takeSurface() {
   surface = unpackSurface(pageData.surface);
   part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
-  if (pageData.part.face) Object.assign(part, { face: pageData.part.face, heading: unpack(pageData.part.heading), plane: unpack(pageData.part.plane) });
+  Object.assign(part, unpackFace(pageData.part));
   trail = { ...unpackSpots(pageData.trail), step: unpack(pageData.trail.step) };
   below = unpackSpots(pageData.part.below);
-  others = (pageData.others ?? []).map((one) => ({ ...one, ...Object.fromEntries(["x", "y", "z"].map((name) => [name, unpack(one[name])])), below: unpackSpots(one.below) }));
+  others = (pageData.others ?? []).map((one) => ({ ...one, ...Object.fromEntries(["x", "y", "z"].map((name) => [name, unpack(one[name])])), below: unpackSpots(one.below), ...unpackFace(one) }));
   units = pageData.units;
   still = Object.fromEntries(["x", "y"].map((axis) => [axis, [alongRim(surface[axis]), atActuators(surface[axis])]]));
+}
+
+function unpackFace({ face, heading, plane }) {
+  return face ? { face, heading: unpack(heading), plane: unpack(plane) } : {};
 }
 
 function unpackSpots(spots) {
@@ -114,13 +118,16 @@ function trailAt(step, z) {
   return { passed, ahead };
 }
 
-// The face of the part at a step, on the plane of its own; a point has none.
-function outlineAt(step) {
-  const found = { x: [], y: [], z: [] }, [middle, ...slopes] = part.plane.subarray(3 * step, 3 * step + 3), here = [part.x[step], part.y[step]];
-  for (const [x, y] of faceAt(part.face, here, part.heading[step]).flatMap((line) => [...line, [null, null]])) {
+// The parts with a face; a point has none.
+function faced() { return [part, ...others].filter((one) => one.face); }
+
+// The face of a part at a step, on the plane of its own.
+function outlineAt(one, step) {
+  const found = { x: [], y: [], z: [] }, [middle, ...slopes] = one.plane.subarray(3 * step, 3 * step + 3), here = [one.x[step], one.y[step]];
+  for (const [x, y] of faceAt(one.face, here, one.heading[step]).flatMap((line) => [...line, [null, null]])) {
     found.x.push(x);
     found.y.push(y);
-    found.z.push(x === null ? null : middle + slopes[0] * (x - here[0]) + slopes[1] * (y - here[1]));
+    found.z.push(x === null ? null : middle + slopes[0] * (x - here[0]) + slopes[1] * (y - here[1]) + lift("face"));
   }
   return found;
 }
@@ -129,13 +136,13 @@ function outlineAt(step) {
 function othersAt(step, z) {
   return others.flatMap((one) => [
     { x: one.x.slice(0, step + 1), y: one.y.slice(0, step + 1), z: Array.from({ length: step + 1 }, (_, k) => valueAt(one.below, k, z) + lift("trail")) },
-    { x: [one.x[step]], y: [one.y[step]], z: [one.z[step] + lift("part")] },
+    { x: [one.x[step]], y: [one.y[step]], z: [one.z[step] + lift(one.face ? "face" : "part")] },
   ]);
 }
 
 // What the traces of the surface show at a step.
 function changingAt(step) {
-  const z = heightsAt(step), { passed, ahead } = trailAt(step, z), beside = othersAt(step, z);
+  const z = heightsAt(step), { passed, ahead } = trailAt(step, z), beside = [...othersAt(step, z), ...faced().map((one) => outlineAt(one, step))];
   const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
   const now = {
     x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]], ...beside.map((one) => one.x)],
@@ -143,12 +150,6 @@ function changingAt(step) {
     z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
       ahead.z, passed.z, raised([part.z[step]], part.face ? "face" : "part"), ...beside.map((one) => one.z)],
   };
-  if (part.face) {
-    const outline = outlineAt(step);
-    now.x.push(outline.x);
-    now.y.push(outline.y);
-    now.z.push(raised(outline.z, "face"));
-  }
   return { ...now, intensity: [z, ...Array(now.z.length - 1).fill(undefined)] };
 }
 
@@ -180,17 +181,18 @@ function drawSurface() {
       line: { color: PATH, width: 6 } },
     { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: pageData.name ?? "part", showlegend: true,
       marker: { size: part.face ? 4 : 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
-    ...others.flatMap(({ name, colour }, k) => [PART + 1 + 2 * k, PART + 2 + 2 * k].map((n) => ({
+    ...others.flatMap(({ name, colour, face }, k) => [PART + 1 + 2 * k, PART + 2 + 2 * k].map((n) => ({
       ...quiet, mode: n % 2 ? "lines" : "markers", x: now.x[n], y: now.y[n], z: now.z[n], name, showlegend: n % 2 === 0,
-      line: { color: colour, width: 6 }, marker: { size: 8, color: colour, line: { color: "#000000", width: 2 } },
+      line: { color: colour, width: 6 }, marker: { size: face ? 4 : 8, color: colour, line: { color: "#000000", width: 2 } },
     }))),
+    ...faced().map(({ colour }, k) => [colour ?? "#000000", PART + 1 + 2 * others.length + k]).map(([color, n]) => (
+      { ...quiet, mode: "lines", x: now.x[n], y: now.y[n], z: now.z[n], line: { color, width: 5 } })),
   ];
-  if (part.face) traces.push({ ...quiet, mode: "lines", x: now.x.at(-1), y: now.y.at(-1), z: now.z.at(-1), line: { color: "#000000", width: 5 } });
   const axis = { showbackground: false, gridcolor: GRID, zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
   const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
   const layout = {
-    font: FONT, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: CARD, uirevision: "kept",
-    legend: { orientation: "h", x: 0, y: 1, bgcolor: "rgba(0,0,0,0)", itemclick: false, itemdoubleclick: false },
+    font: FONT, margin: { l: 0, r: 0, t: NARROW ? 0 : 28, b: 0 }, paper_bgcolor: CARD, uirevision: "kept", // above the legend its buttons
+    legend: { orientation: "h", x: 0, y: 1, itemsizing: "constant", bgcolor: "rgba(0,0,0,0)", itemclick: false, itemdoubleclick: false },
     scene: {
       xaxis: { ...axis, ...title(`x [${units.length}]`) },
       yaxis: { ...axis, ...title(`y [${units.length}]`) },
