@@ -24,6 +24,11 @@ LIFTS: Final = "takes most off the load"
 MICRO, MILLI = 1e6, 1e3
 MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)")
 """The letter u of "2 um", which terminals can print, where it stands for the prefix."""
+PRESSURES: Final = {
+    "linear": "linear over the face, to bear the moments",
+    "uniform": "uniform over the face, whatever the moments",
+    "local": "by the local law of contact, point by point under the face",
+}
 SLIPS = 1 - 1e-6  # of the friction limit: rounding must not decide whether it slips
 
 
@@ -228,6 +233,8 @@ def details(s: Summary) -> list[tuple[str, str]]:
     rows += [("", text) for fit in s.motion_fits for text in _fit(fit)]
     if s.drive_error > 0:
         rows.append(("", f"drives follow their motion to {s.drive_error:.1e} of the stroke"))
+    if s.pressure is not None:
+        rows.append(("pressure", PRESSURES[s.pressure]))
     rows.append(("integrator", count(s.evaluations, "evaluation")))
     return rows + (_model(s) if isinstance(s, PlateSummary) else [])
 

@@ -163,6 +163,25 @@ def test_a_part_that_rests_on_a_still_plate_stays():
     assert again.summary.outcome == "stuck" and again.trajectory.stays is False
 
 
+LOCAL = {"part": TABLES["part"] | {"local_contact": True}, "friction": {"model": "kogut-etsion", "preset": "paper"}}
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("said", "tables"),
+    [
+        ("linear over", {}),
+        ("uniform over", {"part": TABLES["part"] | {"pressure": "uniform"}}),
+        pytest.param("by the local law", LOCAL, marks=pytest.mark.slow),
+        ("None", {"part": {"mass": "1 ug", "position": ["0 um", "0 um"]}}),
+    ],
+)
+def test_a_run_states_its_law_of_pressure(said, tables):
+    summary = run_case(Case.model_validate(TABLES | {"run": {"duration": "0.1 ms"}} | tables)).summary
+    assert str(summary.as_dict()["pressure"]) in said and "pressure" not in dict(lines(summary))
+    assert dict(lines(summary, verbose=True)).get("pressure", "None").startswith(said)
+
+
 @pytest.mark.compiled
 def test_a_run_turns_and_says_so(tmp_path):
     result = run_case(case_of(), output=tmp_path, csv=True)

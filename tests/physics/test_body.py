@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from spring_body import frame
 
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
@@ -50,6 +51,11 @@ def turntable():
 
 def moving(footprint, velocity, spin, **more):
     return Body(footprint, **HALF, velocity=velocity, spin=spin, **{"position": (0, 0), **more})
+
+
+def resting_on(part, footprint, pressure="uniform"):
+    """A part with another face and law of pressure, of the same mass and inertia."""
+    return replace(part, footprint=footprint, density=math.nan, pressure=pressure)
 
 
 # Surface, part, coefficient of friction, duration; then the end's place and heading, events and work dissipated.
@@ -120,6 +126,35 @@ def test_a_disc_stops_sliding_and_turning_at_once_in_the_same_ratio():
         moves = path.spin != 0
         off = np.abs(np.hypot(*path.velocity[moves].T) / (5e-5 * path.spin[moves]) - 0.6530017892056)[-6:]
         assert off[-1] < 3e-4 and (np.diff(off) < 0).all()
+
+
+def test_a_square_on_its_rim_spins_down_as_the_mean_distance_from_its_centre_asks():
+    """Over a square of side a that mean is (sqrt(2) + asinh(1)) a/6, over a frame a difference of two of these."""
+    square = moving(SQUARE, (0, 0), 500.0, centre_height=0.0, pressure="uniform")
+    stops = 500**2 * square.inertia[2, 2] / (0.2 * square.mass * 9.80665)  # rad m, the turn times that mean
+    for wall in (5e-5, 1e-5, 5e-6):
+        outer, inner = 1e-4, 1e-4 - 2 * wall
+        mean = (math.sqrt(2) + math.asinh(1)) / 6 * (outer**3 - inner**3) / (outer**2 - inner**2)
+        face = SQUARE if wall == 5e-5 else Footprint.polygon(frame(5e-5, wall))
+        path = simulate(FLAT, resting_on(square, face), CoulombAdhesion(0.1), 0.1)
+        assert path.heading[-1] == pytest.approx(stops / mean, rel=1e-5)
+
+
+def test_how_far_a_part_turns_depends_on_where_it_presses(plate):
+    """The figures of docs/face.md; tests/validation/test_body_springs.py compares with bodies on springs."""
+    rim = Footprint.polygon(frame(5e-5, 5e-6))
+    thrown, carried = moving(SQUARE, (0.05, 0), 500.0), moving(SQUARE, (0, 0), 0.0, position=(1e-4, 2e-4), heading=0.3)
+    cases = (
+        (FLAT, thrown, 0.1, 0.1, ((1385.53, 1008.89), (1386.01, 1011.04), (1383.51, 784.10))),
+        (plate, carried, 0.02, 0.02, ((8.348, -0.0478), (8.349, -0.2425), (8.277, -0.1640))),
+        (plate, carried, 0.02, 0.1, ((44.896, -0.157), (44.897, -1.431), (44.494, -0.886))),
+    )
+    for surface, part, coefficient, duration, stated in cases:
+        for face, pressure, wanted in zip((SQUARE, SQUARE, rim), ("uniform", "linear", "linear"), stated, strict=True):
+            path = simulate(surface, resting_on(part, face, pressure), CoulombAdhesion(coefficient), duration)
+            assert (1e6 * path.distance, math.degrees(path.heading[-1] - path.heading[0])) == pytest.approx(
+                wanted, rel=5e-3
+            )
 
 
 def test_a_shrinking_face_moves_as_a_point_by_its_size_squared(plate):

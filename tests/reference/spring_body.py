@@ -9,6 +9,8 @@ om^2 and dampers c = 2 zeta m om press with s_k = -(k gap + c gap'):
     "raw"     p_k = g_k s_k. A flat face on a curved surface leaves gaps whatever the load: this has no stiff limit.
     "affine"  p_k = g_k times the affine fit of s over the face, which feels the mean gap and its moments only.
 
+`rim` puts twelve points in place of the nine on a square's rim, that far from its centre.
+
 The surface pushes with p_k n - mu p_k u/sqrt(|u|^2 + eps^2) at P_k, u the tangential part of the point's velocity less
 (0, 0, w_t) and zk n_t. The start is the pose of (X, Y, theta) and its rate, corrected so that the gaps have no rates.
 """
@@ -175,12 +177,20 @@ def jac(t, y, sp, b, pts, g):
     return Jm
 
 
+def frame(half, wall, slit=1e-8):
+    """The corners (12, 2) [m] of a square's rim, a wall wide, as one polygon with a slit."""
+    outer, inner, side = half, half - wall, slit / 2
+    around = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    ends = [[(a, side), *(np.array(around) * a), (a, -side)] for a in (outer, inner)]
+    return np.array([*ends[0], *ends[1][::-1]])
+
+
 def qmul(p, q):
     return np.r_[p[0] * q[0] - p[1:] @ q[1:], p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:])]
 
 
 class Body:
-    def __init__(self, case, om, eps, bed="affine", zeta=1.0):
+    def __init__(self, case, om, eps, bed="affine", zeta=1.0, rim=None):
         c = self.case = CASES[case]
         (a, bb), d = c["face"], c["thickness"]
         m = c["density"] * a * bb * d
@@ -189,6 +199,9 @@ class Body:
         x, wt = np.polynomial.legendre.leggauss(3)
         self.pts = np.array([[a / 2 * u, bb / 2 * v] for u in x for v in x])
         self.g = np.array([u * v for u in wt for v in wt]) / 4
+        if rim is not None:
+            self.pts = rim * np.array([point for u in x for point in ((1, u), (-1, u), (u, 1), (u, -1))])
+            self.g = np.repeat(wt, 4) / 8
         s = c["surface"]
         if s["kind"] == "quadric":
             self.sp = np.array([0.0, s["qx"], s["qy"]])
