@@ -92,9 +92,10 @@ def test_the_outline_of_a_face_is_to_scale_and_turned_at_the_last_step(open_page
     browser.execute_script("show(0)")
     drawn(browser)
     assert readout(browser)["heading"] == "30.0 degrees"
-    scene = browser.find_element(By.ID, "surface")
-    legend, bar = (scene.find_element(By.CLASS_NAME, name).rect for name in ("legend", "modebar-group"))
-    assert legend["y"] >= bar["y"] + bar["height"]
+    for name, words in (("surface", "legend"), ("curves", "annotation")):  # below the buttons
+        chart = browser.find_element(By.ID, name)
+        bar, first = (chart.find_element(By.CLASS_NAME, one).rect for one in ("modebar-group", words))
+        assert first["y"] >= bar["y"] + bar["height"]
 
 
 def test_it_plays_to_the_end_and_pauses(open_page):

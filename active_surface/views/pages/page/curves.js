@@ -40,7 +40,7 @@ function drawCurves() {
   const gap = 0.055, height = (1 - gap * (panels.length - 1)) / panels.length;
   const traces = stateShades(), annotations = [];
   const layout = {
-    font: FONT, margin: { l: 64, r: 12, t: 22, b: 44 }, paper_bgcolor: CARD, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
+    font: FONT, margin: { l: 64, r: 12, t: NARROW ? 22 : 50, b: 44 }, paper_bgcolor: CARD, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
     showlegend: false, dragmode: "zoom",
     xaxis: { title: { text: `time [${units.time}]` }, range: [time[0], time[last] > time[0] ? time[last] : time[0] + 1],
       hoverformat: besideFormat(time[last] / 100), anchor: `y${panels.length + 1}`, showgrid: false, zeroline: false, showline: true, linecolor: SOFT },
