@@ -27,7 +27,6 @@ MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)"
 PRESSURES: Final = {
     "linear": "linear over the face, to bear the moments",
     "uniform": "uniform over the face, whatever the moments",
-    "local": "by the local law of contact, point by point under the face",
 }
 SLIPS = 1 - 1e-6  # of the friction limit: rounding must not decide whether it slips
 

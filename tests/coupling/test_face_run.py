@@ -163,16 +163,12 @@ def test_a_part_that_rests_on_a_still_plate_stays():
     assert again.summary.outcome == "stuck" and again.trajectory.stays is False
 
 
-LOCAL = {"part": TABLES["part"] | {"local_contact": True}, "friction": {"model": "kogut-etsion", "preset": "paper"}}
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("said", "tables"),
     [
         ("linear over", {}),
         ("uniform over", {"part": TABLES["part"] | {"pressure": "uniform"}}),
-        pytest.param("by the local law", LOCAL, marks=pytest.mark.slow),
         ("None", {"part": {"mass": "1 ug", "position": ["0 um", "0 um"]}}),
     ],
 )
