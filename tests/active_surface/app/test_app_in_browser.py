@@ -198,10 +198,11 @@ def test_a_slider_turns_the_outline_at_the_start_and_the_others_follow(opened):
     browser.execute_script("knobs.get('part.heading').slider.dispatchEvent(new Event('change')); show(last)")
     wait(lambda: browser.execute_script("return document.body.dataset.ready") == "run")
     assert shown("start") == pytest.approx(turned, abs=1e-10)
-    browser.execute_script("show(last)")
     end = run_case(read_case(path).vary({"part.heading": "-90 deg"})).trajectory
     outline = part.face.outline(end.position[-1], end.heading[-1])
-    assert shown("end") == pytest.approx(outline, abs=1e-10) and shown("here") == pytest.approx(outline, abs=1e-10)
+    wait(lambda: shown("end") == pytest.approx(outline, abs=1e-10))  # after the path of the slider on its way
+    browser.execute_script("show(last)")
+    assert shown("here") == pytest.approx(outline, abs=1e-10)
 
 
 def test_on_a_phone_the_map_takes_a_third_at_most(opened):
