@@ -84,6 +84,7 @@ def test_scaled_drives_are_those_of_another_frequency_and_stroke():
     assert one.stroke_times.min() == pytest.approx(two.stroke_times.min(), rel=1e-14)
 
 
+@pytest.mark.compiled
 def test_a_face_on_a_platform_slips_turns_and_tips_at_closed_forms():
     side, height, law = 100e-6, 10e-6, CoulombAdhesion(0.4, 1e-8)
     square, press = Footprint.rectangle(side, side), MASS * G + 1e-8
