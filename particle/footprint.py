@@ -64,6 +64,12 @@ class Footprint:
         refuse("Footprint", [(bool(solid), "corners", wanted, corners)])
         return cls((points if area > 0 else points[::-1]) - centroid)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Footprint) and self.radius == other.radius and np.array_equal(self.corners, other.corners)
+
+    def __hash__(self) -> int:
+        return hash((self.radius, self.corners.tobytes()))
+
     @cached_property
     def area(self) -> float:
         """m^2."""
@@ -115,24 +121,37 @@ class Footprint:
         twice = (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])[:, None, None]
         return places.reshape(-1, 2), (np.outer(part * share, part) * twice / self.area).ravel()
 
-    @lru_cache(maxsize=64)  # noqa: B019
-    def averaging(self, points: int) -> tuple[FloatArray, FloatArray]:
-        """Places (n, 2) [m] within a convex face, and weights (n,), exact for polynomials of degree 2 points - 1.
+    @property
+    def _is_parallelogram(self) -> bool:
+        return len(self.corners) == 4 and np.abs(self.corners[0] + self.corners[2]).max() <= FLAT * self.reach
 
-        Few places, as the surface is looked at in each: Gauss's rule on a parallelogram; on a disc Gauss's in r^2 along
-        2 `points` rays; elsewhere those places of `rule` that interpolate best (Fekete's, by a QR decomposition with
-        pivots).
+    def even_rule(self, points: int) -> tuple[FloatArray, FloatArray]:
+        """Places (n, 2) [m], about points squared, spread evenly over the face, and weights (n,) that add up to 1.
+
+        Gauss's rule on a parallelogram; on a disc Gauss's in r^2 along 2 `points` rays: exact for polynomials of degree
+        2 points - 1. On another polygon `rule` with half as many points.
         """
         if self.radius:
             nodes, weights = np.polynomial.legendre.leggauss((points + 1) // 2)
             r, angle = self.radius * np.sqrt((1 + nodes) / 2)[:, None], math.pi * np.arange(2 * points) / points
             places = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1)
             return places.reshape(-1, 2), np.repeat(weights / (4 * points), 2 * points)
-        a, b = self.corners[1:3] - self.corners[:2] if len(self.corners) == 4 else np.zeros((2, 2))
-        if len(self.corners) == 4 and np.abs(self.corners[0] + self.corners[2]).max() <= FLAT * self.reach:
-            nodes, weights = np.polynomial.legendre.leggauss(points)
-            s, t = (axis.ravel()[:, None] / 2 for axis in np.meshgrid(nodes, nodes, indexing="ij"))
-            return s * a + t * b, np.outer(weights, weights).ravel() / 4
+        if not self._is_parallelogram:
+            return self.rule(points // 2)
+        a, b = self.corners[1:3] - self.corners[:2]
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        s, t = (axis.ravel()[:, None] / 2 for axis in np.meshgrid(nodes, nodes, indexing="ij"))
+        return s * a + t * b, np.outer(weights, weights).ravel() / 4
+
+    @lru_cache(maxsize=64)  # noqa: B019
+    def averaging(self, points: int) -> tuple[FloatArray, FloatArray]:
+        """Places (n, 2) [m] within a convex face, and weights (n,), exact for polynomials of degree 2 points - 1.
+
+        Few places, as the surface is looked at in each: those of `even_rule` on a parallelogram and a disc; elsewhere
+        those places of `rule` that interpolate best (Fekete's, by a QR decomposition with pivots).
+        """
+        if self.radius or self._is_parallelogram:
+            return self.even_rule(points)
         from scipy.linalg import qr  # here, because points do without it
 
         degree = 2 * points - 1

@@ -13,7 +13,8 @@ from particle.body import Body, Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
-from particle.friction import LOCAL, Contact
+from particle.footprint import Footprint
+from particle.friction import LOCAL, Contact, ScaledFriction
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
@@ -120,8 +121,8 @@ def simulate(
         )
     wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += part_faults(surface, part, type(part).__name__)
-    wrong += law_faults(part, friction)
-    if scheme == "paper" and friction.law.kind == LOCAL:
+    wrong += law_faults(part, friction, after_tipping)
+    if scheme == "paper" and not wrong and friction.law.kind == LOCAL:
         wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
@@ -158,11 +159,26 @@ def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list
     return wrong
 
 
-def law_faults(part: Micropart | Body, friction: Contact) -> list[str]:
+def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "stop") -> list[str]:
     """What is wrong with a friction law for a part."""
-    if isinstance(part, Body) and friction.law.kind == LOCAL:
-        return ["Input friction must not be a LocalContact with a Body, whose pressure is linear or uniform"]
-    return []
+    if not hasattr(friction, "law"):
+        return [f"Input friction must be a friction law, such as CoulombAdhesion; got {friction!r}"]
+    if friction.law.kind != LOCAL:
+        return []
+    while isinstance(friction, ScaledFriction):
+        friction = friction.contact
+    size = getattr(friction, "size", None)
+    if not isinstance(part, Body):
+        square = "Input size of LocalContact must be the side of a square, in m, with a Micropart"
+        return [square] if isinstance(size, Footprint) else []
+    wrong = []
+    if size != part.footprint:
+        wrong.append("Input size of LocalContact must be the footprint of the Body")
+    if part.pressure != "linear":
+        wrong.append(f"Input pressure of Body must be 'linear' with a LocalContact; got {part.pressure!r}")
+    if after_tipping != "stop":
+        wrong.append(f"Input after_tipping of simulate must be 'stop' with a LocalContact; got {after_tipping!r}")
+    return wrong
 
 
 def _least_gap(surface: SurfaceMotion, part: Body) -> float:

@@ -24,11 +24,11 @@ from typing import Annotated, NamedTuple
 
 from particle.body.averages import AT, BY, BY_BY, BY_T, PLACE, ROWS, TT, X_BY, XT, XX, XY, Y_BY, YT, YY, T, X, Y
 from particle.body.face import Face
+from particle.body.press import Press, fill_pressed_friction, press
 from particle.body.wrench import fill_wrenches
 from particle.events.mechanics import Part
-from particle.friction import friction_limit, friction_slope
+from particle.friction import LOCAL, friction_limit, friction_slope
 from particle.jit import device_no_arrays
-from particle.records import Record
 from particle.types import FloatArray
 
 MOST_PASSES, SETTLED = 30, 1e-14
@@ -48,7 +48,7 @@ class Base(NamedTuple):
     spin_rate: float
 
 
-class Balance(Record):
+class Balance(Press):
     """Scratch memory of the equations at one state."""
 
     averages: Annotated[FloatArray, ROWS, PLACE]
@@ -63,6 +63,7 @@ class Balance(Record):
     forces: Annotated[FloatArray, 6, 4]  # (f_1, f_2, tau, N, M_1, M_2): at u = 0, then by u
     carried: Annotated[FloatArray, 6]  # the face's twist at (X', Y', theta') = 0, like `forces`
     wrenches: Annotated[FloatArray, 3, 3]  # of `wrench`
+    friction: Annotated[FloatArray, 3, 4]  # the wrench W, then by what it changes with N, M_1 and M_2
     matrix: Annotated[FloatArray, 3, 4]  # a system of equations
     rates: Annotated[FloatArray, 3]  # u
     slip: Annotated[FloatArray, 3]  # the face's planar twist
@@ -128,6 +129,13 @@ def fill_pose(part: Part, base: Base, b: Balance) -> bool:
             return False
         for i in range(3):
             b.workless[i, column] = b.rates[i]
+    # The second derivatives of w, in the body's axes.
+    cosine, sine = b.axes[0, 0], b.axes[0, 1]
+    size = cosine * cosine + sine * sine
+    w_xx, w_xy, w_yy = b.averages[XX, 2] / size, b.averages[XY, 2] / size, b.averages[YY, 2] / size
+    b.bend[0] = cosine * cosine * w_xx + 2 * cosine * sine * w_xy + sine * sine * w_yy
+    b.bend[1] = cosine * sine * (w_yy - w_xx) + (cosine * cosine - sine * sine) * w_xy
+    b.bend[2] = sine * sine * w_xx - 2 * cosine * sine * w_xy + cosine * cosine * w_yy
     _fill_twist(b, b.averages[T])
     t, c = b.twist, b.carried
     x, y_ = y[0] + part.contact * b.axes[2, 0], y[1] + part.contact * b.axes[2, 1]
@@ -287,34 +295,57 @@ def least_pressure(face: Face, b: Balance) -> float:
 
 @device_no_arrays
 def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Balance) -> bool:
-    """u under friction against the slip s into b.rates, with its load b.load; False where there is none."""
-    fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
-    load = b.load[0]
+    """u under friction against the slip s into b.rates, with its load b.load; False where there is none.
+
+    Beyond the end of a local contact friction goes on as at the last gap.
+    """
+    local = part.law.kind == LOCAL
+    if not local:
+        fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
     for _ in range(MOST_PASSES):
-        _fill_system(part, face, load, b)
+        if local:
+            press(part.law, face, b.load, b)
+        fill_friction(part, face, s_1, s_2, s_3, b)
+        n, m_1, m_2 = b.load[0], b.load[1], b.load[2]
+        _fill_system(part, b)
         if not solve(b.matrix, b.rates):
             return False
         set_load(part, b.rates[0], b.rates[1], b.rates[2], b)
-        off = abs(b.load[0] - load)
-        load = b.load[0]
-        if off <= SETTLED * (abs(load) + part.mass * abs(part.gravity)) or part.law.kind < 2:
+        off = abs(b.load[0] - n)
+        if local:
+            off += (abs(b.load[1] - m_1) + abs(b.load[2] - m_2)) / face.reach
+        if off <= SETTLED * (abs(b.load[0]) + part.mass * abs(part.gravity)) or part.law.kind < 2:
             return True
     return True
 
 
 @device_no_arrays
-def _fill_system(part: Part, face: Face, load: float, b: Balance) -> None:
-    """[p_u - (F + P) n_u] u = F_0 + (F + P) n_0 - p_0, with Q(N) linear around a load [N], into b.matrix."""
-    limit, slope = friction_limit(part.law, load) / face.area, friction_slope(part.law, load) / face.area
-    w, s, f = b.wrenches, face.unmoments, b.forces
+def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Balance) -> None:
+    """The wrench of friction while sliding against the slip s under b.load, and by what it changes, into b.friction.
+
+    Made before: with a local contact its gap, `press`, else b.wrenches.
+    """
+    if part.law.kind == LOCAL:
+        fill_pressed_friction(part.law, face, s_1, s_2, s_3, b, b.wrenches, b.friction)
+        return
+    load, w, s = b.load, b.wrenches, face.unmoments
+    limit, slope = friction_limit(part.law, load[0]) / face.area, friction_slope(part.law, load[0]) / face.area
     for i in range(3):
-        by_load, by_m_1, by_m_2 = slope * w[i, 0], 0.0, 0.0
+        by_m_1 = by_m_2 = 0.0
         if face.linear:
             by_m_1 = slope * (w[i, 1] * s[0, 1] + w[i, 2] * s[1, 1])
             by_m_2 = -slope * (w[i, 1] * s[0, 0] + w[i, 2] * s[1, 0])
-        right = w[i, 0] * (limit - slope * (load - part.squeeze))
-        by_load, by_m_1 = by_load + b.workless[i, 0], by_m_1 + b.workless[i, 1]
-        by_m_2 += b.workless[i, 2]
+        b.friction[i, 0] = limit * w[i, 0] + by_m_1 * load[1] + by_m_2 * load[2]
+        b.friction[i, 1], b.friction[i, 2], b.friction[i, 3] = slope * w[i, 0], by_m_1, by_m_2
+
+
+@device_no_arrays
+def _fill_system(part: Part, b: Balance) -> None:
+    """[p_u - (W' + P) n_u] u = W - W' L + (W' + P) n_0 - p_0 with W linear around the load L = b.load, into b.matrix."""
+    f, w, load = b.forces, b.friction, b.load
+    for i in range(3):
+        right = w[i, 0] - w[i, 1] * (load[0] - part.squeeze) - w[i, 2] * load[1] - w[i, 3] * load[2]
+        by_load, by_m_1, by_m_2 = w[i, 1] + b.workless[i, 0], w[i, 2] + b.workless[i, 1], w[i, 3] + b.workless[i, 2]
         for j in range(4):
             normal = by_load * f[3, j] + by_m_1 * f[4, j] + by_m_2 * f[5, j]
             if j == 0:

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.body.averages import AT, enter_all
-from particle.body.balance import find_rates, friction_wrench
+from particle.body.balance import find_rates, friction_wrench, set_load
 from particle.body.face import Face
 from particle.body.limit import gauge, needed
 from particle.body.memory import HEADING, SPIN, V_X, V_Y, Memory, X, Y
+from particle.body.press import pull_to_end
 from particle.body.state import base_at, settle, slip_speed
 from particle.events import CONTACT_STATE, ContactState, Request, Row
-from particle.friction import friction_limit
+from particle.friction import LOCAL, friction_limit
 from particle.jit import jit
 from particle.modes import Mode
 from particle.surface import Surface
@@ -55,11 +56,6 @@ def face_states(
         found.z = y[2] + part.contact * found.normal_z
         found.centre_x, found.centre_y = x + part.centre * found.normal_x, y_ + part.centre * found.normal_y
         found.centre_z = y[2] + part.centre * found.normal_z
-        needed(b, s.needed)
-        limit = part.law.static_ratio * friction_limit(part.law, b.load[0])
-        found.point_pull = math.hypot(s.needed[0], s.needed[1]) / part.mass
-        found.pull = gauge(part, face, b, s) * limit / part.mass
-        found.added_pull = abs(found.pull - found.point_pull)
         for i in range(3):
             b.rates[i] = 0.0
         if row.mode == Mode.SLIDING and slip_speed(face, memory) > 0.0:
@@ -68,4 +64,12 @@ def face_states(
         f_x, f_y = f_1 * e[0, 0] + f_2 * e[1, 0], f_1 * e[0, 1] + f_2 * e[1, 1]
         found.friction_x, found.friction_y = cosine * f_x - sine * f_y, sine * f_x + cosine * f_y
         found.friction_z = f_1 * e[0, 2] + f_2 * e[1, 2]
+        if part.law.kind == LOCAL:
+            found.bend_loss = b.load[0] + part.law.pull_off - pull_to_end(part.law, face, b.load, b)
+        set_load(part, 0.0, 0.0, 0.0, b)
+        needed(b, s.needed)
+        limit = part.law.static_ratio * friction_limit(part.law, b.load[0])
+        found.point_pull = math.hypot(s.needed[0], s.needed[1]) / part.mass
+        found.pull = gauge(part, face, b, s) * limit / part.mass
+        found.added_pull = abs(found.pull - found.point_pull)
     return out

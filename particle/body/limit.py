@@ -14,11 +14,12 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from particle.body.balance import Balance, find_rates
+from particle.body.balance import Balance, fill_friction, find_rates
 from particle.body.face import Face
+from particle.body.press import press
 from particle.body.wrench import fill_wrenches
 from particle.events.mechanics import Part
-from particle.friction import friction_limit, friction_slope
+from particle.friction import LOCAL
 from particle.jit import device_no_arrays
 from particle.records import Record
 from particle.types import FloatArray
@@ -48,23 +49,6 @@ def needed(b: Balance, out: FloatArray) -> None:
 
 
 @device_no_arrays
-def fill_friction(
-    part: Part, face: Face, s_1: float, s_2: float, s_3: float, static: bool, b: Balance, out: FloatArray
-) -> None:
-    """The wrench of friction against the slip s under the load b.load into `out` (3,)."""
-    fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
-    ratio = (part.law.static_ratio if static else 1.0) / face.area
-    q, slope = ratio * friction_limit(part.law, b.load[0]), ratio * friction_slope(part.law, b.load[0])
-    x = y = 0.0
-    if face.linear:
-        s = face.unmoments
-        x = slope * (-s[0, 0] * b.load[2] + s[0, 1] * b.load[1])
-        y = slope * (-s[1, 0] * b.load[2] + s[1, 1] * b.load[1])
-    for i in range(3):
-        out[i] = q * b.wrenches[i, 0] + x * b.wrenches[i, 1] + y * b.wrenches[i, 2]
-
-
-@device_no_arrays
 def _directions(e: FloatArray, out: FloatArray) -> None:
     """Two unit vectors at right angles to e (3,) into the rows of `out` (2, 3)."""
     k = 0
@@ -88,6 +72,8 @@ def gauge(part: Part, face: Face, b: Balance, s: Search) -> float:
 
     Newton's method for the least D on the plane -W.xi = 1.
     """
+    if part.law.kind == LOCAL:
+        press(part.law, face, b.load, b)
     c = face.arm
     w_1, w_2, w_3 = s.needed[0], s.needed[1], s.needed[2] / c
     size = math.sqrt(w_1 * w_1 + w_2 * w_2 + w_3 * w_3)
@@ -142,8 +128,11 @@ def _resistance(part: Part, face: Face, p_1: float, p_2: float, b: Balance, s: S
     x = s.normal[0] + p_1 * s.plane[0, 0] + p_2 * s.plane[1, 0]
     y = s.normal[1] + p_1 * s.plane[0, 1] + p_2 * s.plane[1, 1]
     z = s.normal[2] + p_1 * s.plane[0, 2] + p_2 * s.plane[1, 2]
-    fill_friction(part, face, x, y, z / face.arm, True, b, out)
-    out[2] /= face.arm
+    if part.law.kind != LOCAL:
+        fill_wrenches(face, x, y, z / face.arm, b.wrenches)
+    fill_friction(part, face, x, y, z / face.arm, b)
+    for i in range(3):
+        out[i] = part.law.static_ratio * b.friction[i, 0] / (face.arm if i == 2 else 1.0)
     return -(x * out[0] + y * out[1] + z * out[2])
 
 

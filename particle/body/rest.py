@@ -17,10 +17,11 @@ from particle.body.balance import least_pressure
 from particle.body.face import Face
 from particle.body.limit import gauge, needed
 from particle.body.memory import HEADING, Memory, X, Y
+from particle.body.press import pull_to_end
 from particle.body.state import contact_margin, settle
 from particle.events import Request
 from particle.events.mechanics import Part
-from particle.friction import friction_limit, friction_slope
+from particle.friction import LOCAL, friction_limit, friction_slope
 from particle.jit import device_no_arrays, inlined, jit
 from particle.surface import Surface
 from particle.types import FloatArray
@@ -45,6 +46,8 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
     if margin < 0.0:
         return -margin
     needed(b, s.needed)
+    if part.law.kind == LOCAL:
+        return max(gauge(part, face, b, s) - 1.0, -margin)
     turn = s.needed[2] / face.arm
     force = math.sqrt(s.needed[0] * s.needed[0] + s.needed[1] * s.needed[1] + turn * turn)
     load = b.load[0]
@@ -77,6 +80,8 @@ def rest_margins(
         if not settle(part, face, memory, state, time):
             continue
         margin = contact_margin(part, face, memory)
+        if part.law.kind == LOCAL and margin >= 0.0:
+            margin = pull_to_end(part.law, face, b.load, b) / (part.mass * max(1.0, abs(part.gravity)))
         needed(b, s.needed)
         pulled = abs(s.needed[0]) + abs(s.needed[1]) + abs(s.needed[2]) > 0.0
         if margin >= 0.0:

@@ -17,9 +17,11 @@ from particle.body.balance import (
 )
 from particle.body.face import Face
 from particle.body.memory import HEADING, LOSS, SPIN, V_X, V_Y, WORK, Memory, X, Y
+from particle.body.press import OPEN, press
 from particle.drives import evaluate_piece
 from particle.events import Row
 from particle.events.mechanics import Part
+from particle.friction import LOCAL
 from particle.jit import device_no_arrays
 from particle.modes import Verdict
 from particle.surface import LocalSurface, Surface, has_rim, rim_gap
@@ -66,6 +68,9 @@ def contact_margin(part: Part, face: Face, memory: Memory) -> float:
     """How far the contact is from its end under b.load, dimensionless: pull-off, the largest load, a lifted edge."""
     load, weight = memory.balance[0].load[0], part.mass * max(1.0, abs(part.gravity))
     least = math.inf
+    if part.law.kind == LOCAL:
+        b = memory.balance[0]
+        return min(b.stability if press(part.law, face, b.load, b) else -1.0, (part.law.largest_load - load) / weight)
     if math.isfinite(part.law.pull_off):
         least = (load + part.law.pull_off) / weight
         if face.tips:
@@ -99,6 +104,10 @@ def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: 
         return Verdict.LEFT_PLATE
     if load < -part.law.pull_off:
         return Verdict.DETACHED
+    if part.law.kind == LOCAL and load <= part.law.largest_load:
+        b = memory.balance[0]
+        press(part.law, face, b.load, b)
+        return Verdict.DETACHED if b.closest > OPEN else Verdict.TIPPED
     return Verdict.OVERLOADED if load > part.law.largest_load else Verdict.TIPPED
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from particle.checks import finite, not_negative, positive, refuse
 from particle.jit import device_no_arrays, jit
-from particle.types import FloatArray
+from particle.types import FloatArray, IntArray
 
 CONSTANT, COULOMB, TABLE, POINTS, LOCAL = 0, 1, 2, 3, 4
 
@@ -33,10 +33,13 @@ class FrictionLaw(NamedTuple):
     # Polynomials on each interval, highest power first. TABLE: (4, knots - 1), of ln Q over u, from the knot before.
     # POINTS: (6, points + 1), of Q [N] over the load, from the point before; below them all, from the first point.
     pieces: FloatArray
-    # LOCAL, with the table of a flat surface: see `grip`.
+    # LOCAL, with the table of a flat surface: see `grip`, and `body.press` for a part with a face.
+    roughness: float  # m
     fold: float  # roughnesses, the separation at pull-off
     per_area: FloatArray  # (intervals, 8) Pa, cubics of p - a and q, highest power first, over the separation
-    places: FloatArray  # (points + 1, 4) x^2/2, x y, y^2/2 over the roughness [m] and weights [m^2]; last the corner
+    places: FloatArray  # (points + 1, 4) x^2/2, x y, y^2/2 over the roughness [m] and weights [m^2]; last the corner.
+    # Of a face two more columns: x and y over its reach.
+    ends: IntArray  # (4,) where the rules end that `places` has one after the other
 
 
 class Contact(Protocol):
@@ -163,7 +166,7 @@ def new_law(
         float(step),
         np.zeros(1) if loads is None else loads,
         np.zeros((4, 1)) if pieces is None else pieces,
-        *(0.0, np.zeros((1, 8)), np.zeros((1, 4))),
+        *(0.0, 0.0, np.zeros((1, 8)), np.zeros((1, 4)), np.zeros(1, dtype=np.int64)),
     )
 
 

@@ -23,7 +23,6 @@ LEAST, NEAR, HIGHEST = -4.0, 12.0, 8.0  # roughnesses: the table's begin, where 
 STEPS, FAR_STEPS = 128, 96  # intervals of the table in a roughness, and in 1/d from NEAR on
 SIDES: Final = 12, 16, 24, 48  # points along a side of the square, and
 SPREADS: Final = 2.0, 5.0, 16.0, math.inf  # up to which spread of c they do
-ENDS: Final = tuple(int(end) for end in np.cumsum([n * n // 2 for n in SIDES]))
 TURNS, SETTLED = 60, 1e-6  # Newton's steps, and roughnesses: the next would be the square of that
 GROWTH = 1.9  # 1/roughness, of the root of the load above its least
 
@@ -35,8 +34,8 @@ class Grip(NamedTuple):
     load: float  # N, as far above pull-off as on a flat surface
 
 
-class _Sums(NamedTuple):
-    """N and Q at a gap z, and derivatives by z."""
+class Pressures(NamedTuple):
+    """p - a and q [Pa] at a separation, with derivatives by it in roughnesses; or N and Q [N] at a gap."""
 
     net: float
     slope: float
@@ -53,13 +52,11 @@ def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip
     """
     if law.kind != LOCAL:
         return Grip(friction_limit(law, load), load)
-    spread = law.places[ENDS[-1], 0] * (abs(xx) + abs(yy)) + law.places[ENDS[-1], 1] * abs(xy)
+    spread = spread_of(law, xx, xy, yy)
     if not spread < math.inf:  # off the plate
         return Grip(friction_limit(law, load), load)
-    rule = 0
-    while spread > SPREADS[rule]:
-        rule += 1
-    first, end, highest = (ENDS[rule - 1] if rule > 0 else 0), ENDS[rule], -math.inf
+    first, end = rule_for(law, spread)
+    highest = -math.inf
     for k in range(first, end):
         highest = max(highest, _height(law.places, k, xx, xy, yy))
     # Where N is least.
@@ -99,40 +96,69 @@ def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip
 
 
 @device_no_arrays
+def spread_of(law: FrictionLaw, xx: float, xy: float, yy: float) -> float:
+    """The largest c under the face, in roughnesses, or somewhat more."""
+    corner = law.places[len(law.places) - 1]
+    return float(corner[0] * abs(xx) + corner[1] * abs(xy) + corner[2] * abs(yy))
+
+
+@device_no_arrays
+def rule_for(law: FrictionLaw, spread: float) -> tuple[int, int]:
+    """The first place of the rule for a spread of c, and the place after its last."""
+    rule = 0
+    while spread > SPREADS[rule]:
+        rule += 1
+    return (int(law.ends[rule - 1]) if rule > 0 else 0), int(law.ends[rule])
+
+
+@device_no_arrays
 def _height(places: FloatArray, k: int, xx: float, xy: float, yy: float) -> float:
     """c at the k-th point."""
     return float(places[k, 0] * xx + places[k, 1] * xy + places[k, 2] * yy)
 
 
 @device_no_arrays
-def _sums(law: FrictionLaw, first: int, end: int, top: float, xx: float, xy: float, yy: float) -> _Sums:
-    """N and Q of a part whose face is `top` roughnesses over the middle."""
+def _sums(law: FrictionLaw, first: int, end: int, top: float, xx: float, xy: float, yy: float) -> Pressures:
+    """N and Q of a part whose face is `top` roughnesses over the middle, and their derivatives by the gap."""
     net = slope = bend = limit = limit_slope = 0.0
-    places, c = law.places, law.per_area
-    rows, last = int((NEAR - LEAST) * STEPS), int((NEAR - LEAST) * STEPS) + FAR_STEPS - 1
     for k in range(first, end):
-        d, weight = top - _height(places, k, xx, xy, yy), places[k, 3]
-        if d < NEAR:
-            at = (d - LEAST) * STEPS
-            m = max(int(at), 0)
-            s = (at - m) / STEPS
-            net += weight * (((c[m, 0] * s + c[m, 1]) * s + c[m, 2]) * s + c[m, 3])
-            slope += weight * ((3 * c[m, 0] * s + 2 * c[m, 1]) * s + c[m, 2])
-            bend += weight * (6 * c[m, 0] * s + 2 * c[m, 1])
-            limit += weight * (((c[m, 4] * s + c[m, 5]) * s + c[m, 6]) * s + c[m, 7])
-            limit_slope += weight * ((3 * c[m, 4] * s + 2 * c[m, 5]) * s + c[m, 6])
-        else:
-            over = 1.0 / d
-            at = over * (NEAR * FAR_STEPS)
-            m = min(rows + int(at), last)
-            s = (at - (m - rows)) / (NEAR * FAR_STEPS)
-            f = ((c[m, 0] * s + c[m, 1]) * s + c[m, 2]) * s + c[m, 3]
-            f_s, f_ss = (3 * c[m, 0] * s + 2 * c[m, 1]) * s + c[m, 2], 6 * c[m, 0] * s + 2 * c[m, 1]
-            square = over * over
-            net += weight * f * square
-            slope -= weight * (f_s * over + 2 * f) * square * over
-            bend += weight * ((f_ss * over + 6 * f_s) * over + 6 * f) * square * square
-    return _Sums(net, slope, bend, limit, limit_slope)
+        weight, p = law.places[k, 3], pressures(law, top - _height(law.places, k, xx, xy, yy))
+        net += weight * p.net
+        slope += weight * p.slope
+        bend += weight * p.bend
+        limit += weight * p.limit
+        limit_slope += weight * p.limit_slope
+    return Pressures(net, slope, bend, limit, limit_slope)
+
+
+@device_no_arrays
+def pressures(law: FrictionLaw, d: float) -> Pressures:
+    """p - a and q at a separation of d roughnesses, from `law.per_area`."""
+    c, rows = law.per_area, int((NEAR - LEAST) * STEPS)
+    if d < NEAR:
+        at = (d - LEAST) * STEPS
+        m = max(int(at), 0)
+        s = (at - m) / STEPS
+        return Pressures(
+            ((c[m, 0] * s + c[m, 1]) * s + c[m, 2]) * s + c[m, 3],
+            (3 * c[m, 0] * s + 2 * c[m, 1]) * s + c[m, 2],
+            6 * c[m, 0] * s + 2 * c[m, 1],
+            ((c[m, 4] * s + c[m, 5]) * s + c[m, 6]) * s + c[m, 7],
+            (3 * c[m, 4] * s + 2 * c[m, 5]) * s + c[m, 6],
+        )
+    over = 1.0 / d
+    at = over * (NEAR * FAR_STEPS)
+    m = min(rows + int(at), rows + FAR_STEPS - 1)
+    s = (at - (m - rows)) / (NEAR * FAR_STEPS)
+    f = ((c[m, 0] * s + c[m, 1]) * s + c[m, 2]) * s + c[m, 3]
+    f_s, f_ss = (3 * c[m, 0] * s + 2 * c[m, 1]) * s + c[m, 2], 6 * c[m, 0] * s + 2 * c[m, 1]
+    square = over * over
+    return Pressures(
+        f * square,
+        -(f_s * over + 2 * f) * square * over,
+        ((f_ss * over + 6 * f_s) * over + 6 * f) * square * square,
+        *(0.0, 0.0),
+    )
 
 
 @jit

@@ -21,31 +21,40 @@ from particle.types import FloatArray
 
 @dataclass(frozen=True)
 class LocalContact:
-    """Kogut and Etsion's contact under a square part that does not turn, by the surface's curvature under it.
+    """Kogut and Etsion's contact under a part with a size, point by point, by the surface's curvature under it.
 
     Parameters
     ----------
     contact : KogutEtsion
-        The law of the surfaces; the area is size squared, whatever its own.
-    size : float
-        Side of the square, along x and y, m.
+        The law of the surfaces; the area is that of the face, whatever its own.
+    size : float or Footprint
+        Side of the square under a part that does not turn, along x and y, m; or the footprint of a `Body`.
 
     Raises
     ------
     ValueError
-        The size is not positive.
+        The side is not positive, or part of a footprint is hidden from its centroid behind another.
     """
 
     contact: KogutEtsion
-    size: float  # m
+    size: float | Footprint  # m
 
     def __post_init__(self) -> None:
-        refuse("LocalContact", [(positive(self.size), "size", "a positive length in m", self.size)])
+        if isinstance(self.size, Footprint):
+            seen = bool((self.size.even_rule(SIDES[0])[1] > 0).all())
+            refuse("LocalContact", [(seen, "size", "a footprint all of which its centroid sees", self.size.corners)])
+        else:
+            refuse("LocalContact", [(positive(self.size), "size", "a positive length in m", self.size)])
+
+    @cached_property
+    def footprint(self) -> Footprint:
+        """The face."""
+        return self.size if isinstance(self.size, Footprint) else Footprint.rectangle(self.size, self.size)
 
     @cached_property
     def flat(self) -> KogutEtsion:
         """The contact on a flat surface."""
-        return replace(self.contact, contact_area=self.size**2)
+        return replace(self.contact, contact_area=self.footprint.area)
 
     @property
     def pull_off(self) -> float:
@@ -68,10 +77,10 @@ class LocalContact:
 
     def on_surface(self, hessian: ArrayLike) -> FaceLaw:
         """The contact on a surface with the second derivatives (2, 2) [1/m], by finer rules than a path's."""
-        return FaceLaw(self.contact, Footprint.rectangle(self.size, self.size), hessian)
+        return FaceLaw(self.contact, self.footprint, hessian)
 
     def bears(self, net_load: ArrayLike, hessian: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """The friction limit and the pull-off force (k,) [N] under net loads (k,) [N] on surfaces (k, 2, 2) [1/m]."""
+        """Of a square: friction limit and pull-off force (k,) [N] under loads (k,) [N] on surfaces (k, 2, 2) [1/m]."""
         loads = np.asarray(net_load, dtype=float)
         bends = np.asarray(hessian, dtype=float).reshape(-1, 4)[:, [0, 1, 3]]
         limits, flat = grips(self.law, loads, np.ascontiguousarray(bends))
@@ -79,21 +88,36 @@ class LocalContact:
 
     @cached_property
     def law(self) -> FrictionLaw:
-        """The flat contact's table, with p - a and q per area and the points of the square."""
-        places = np.concatenate([_half_square(count, self.size) for count in SIDES])
-        corner = [self.size**2 / 8, self.size**2 / 4, self.size**2 / 8, 0.0]
-        places = np.concatenate([places, [corner]])
+        """The flat contact's table, with p - a and q per area and the points of the face."""
+        turns = isinstance(self.size, Footprint)
+        rules = [_of_face(self.footprint, n) if turns else _half_square(n, self.footprint) for n in SIDES]
+        x, y = np.abs(self.footprint.corners).max(axis=0, initial=self.footprint.radius)
+        corner = np.array([[x * x / 2, x * y, y * y / 2, *np.zeros(rules[0].shape[1] - 3)]])
+        places = np.concatenate([*rules, corner])
         places[:, :3] /= self.contact.roughness
-        fold = self.contact.branch[1]
-        return self.flat.law._replace(kind=LOCAL, fold=fold, per_area=_per_area(self.contact), places=places)
+        return self.flat.law._replace(
+            kind=LOCAL,
+            roughness=self.contact.roughness,
+            fold=self.contact.branch[1],
+            per_area=_per_area(self.contact),
+            places=places,
+            ends=np.cumsum([len(rule) for rule in rules]),
+        )
 
 
-def _half_square(count: int, size: float) -> FloatArray:
+def _half_square(count: int, square: Footprint) -> FloatArray:
     """x^2/2, x y and y^2/2 at Gauss's points of the upper half of a square, and twice their weights; (n, 4) [m^2]."""
+    side = 2 * float(square.corners.max())
     x, w_x = np.polynomial.legendre.leggauss(count)
     y, w_y = np.polynomial.legendre.leggauss(count // 2)
-    x, y = (each.ravel() * size / 2 for each in np.meshgrid(x, (y + 1) / 2, indexing="ij"))
-    return np.column_stack([x * x / 2, x * y, y * y / 2, np.outer(w_x, w_y).ravel() * size**2 / 4])
+    x, y = (each.ravel() * side / 2 for each in np.meshgrid(x, (y + 1) / 2, indexing="ij"))
+    return np.column_stack([x * x / 2, x * y, y * y / 2, np.outer(w_x, w_y).ravel() * side**2 / 4])
+
+
+def _of_face(footprint: Footprint, count: int) -> FloatArray:
+    """x^2/2, x y and y^2/2 [m^2] at points of a face, their weights [m^2], and x and y over its reach; (n, 6)."""
+    (x, y), weights = footprint.even_rule(count)[0].T, footprint.even_rule(count)[1] * footprint.area
+    return np.column_stack([x * x / 2, x * y, y * y / 2, weights, x / footprint.reach, y / footprint.reach])
 
 
 def _per_area(contact: KogutEtsion) -> FloatArray:
