@@ -49,13 +49,13 @@ def friction_of(case: Case) -> FrictionCase:
     return law
 
 
-def local_size(case: Case) -> float | None:
-    """The side [m] of a point under which the law of a rough contact is local; None: it is not."""
-    return case.footprint if case.part.local_contact else None
+def local_size(case: Case) -> float | Footprint | None:
+    """The face, or the side [m] of a point's, under which the law of a rough contact is local; None: it is not."""
+    return (case.part.face or case.footprint) if case.part.local_contact else None
 
 
 @lru_cache(maxsize=256)
-def friction_law(law: FrictionCase, size: float | None = None) -> Contact:
+def friction_law(law: FrictionCase, size: float | Footprint | None = None) -> Contact:
     """The friction law of a case's table; one that was made lately is not tabulated again.
 
     size: as `local_size`.

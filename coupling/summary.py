@@ -40,7 +40,7 @@ class Summary:
     end_heading: float | None  # rad, counter-clockwise, whole turns counted; None: a point, as for the next three
     turned: float | None  # rad, from start to end
     least_pressure: float | None  # under the part over the mean, adhesion included: 0 where an edge lifts; None: no law
-    pressure: str | None  # how it presses: "linear" or "uniform" over the face
+    pressure: str | None  # how it presses: "linear", "uniform" or "local" over the face
     distance: float  # m, from start to end
     path_length: float  # m
     time_stuck: float  # s
@@ -111,7 +111,7 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
         at_rest_since=trajectory.at_rest_since,
         end_position=(float(trajectory.position[-1, 0]), float(trajectory.position[-1, 1])),
         **_face(trajectory, friction),
-        pressure=None if case.part.face is None else case.part.pressure,
+        pressure=None if case.part.face is None else "local" if case.part.local_contact else case.part.pressure,
         distance=trajectory.distance,
         path_length=trajectory.path_length,
         time_stuck=trajectory.time_in(State.STICK),

@@ -88,7 +88,9 @@ def simulate_many(
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
     wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += [fault for k, part in enumerate(parts) for fault in part_faults(surface, part, f"part {k}")]
-    wrong += [fault for part, law in zip(parts, frictions, strict=False) for fault in law_faults(part, law, after_tipping)]
+    wrong += [
+        fault for part, law in zip(parts, frictions, strict=False) for fault in law_faults(part, law, after_tipping)
+    ]
     if after_detachment == "fly" and any(isinstance(part, Body) for part in parts):
         wrong.append("Input after_detachment of simulate_many must be 'stop' with a Body; got 'fly'")
     if wrong:

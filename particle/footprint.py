@@ -65,7 +65,9 @@ class Footprint:
         return cls((points if area > 0 else points[::-1]) - centroid)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Footprint) and self.radius == other.radius and np.array_equal(self.corners, other.corners)
+        return (
+            isinstance(other, Footprint) and self.radius == other.radius and np.array_equal(self.corners, other.corners)
+        )
 
     def __hash__(self) -> int:
         return hash((self.radius, self.corners.tobytes()))
@@ -129,7 +131,7 @@ class Footprint:
         """Places (n, 2) [m], about points squared, spread evenly over the face, and weights (n,) that add up to 1.
 
         Gauss's rule on a parallelogram; on a disc Gauss's in r^2 along 2 `points` rays: exact for polynomials of degree
-        2 points - 1. On another polygon `rule` with half as many points.
+        2 points - 1. On another polygon `rule` with two thirds as many points.
         """
         if self.radius:
             nodes, weights = np.polynomial.legendre.leggauss((points + 1) // 2)
@@ -137,7 +139,7 @@ class Footprint:
             places = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1)
             return places.reshape(-1, 2), np.repeat(weights / (4 * points), 2 * points)
         if not self._is_parallelogram:
-            return self.rule(points // 2)
+            return self.rule(2 * points // 3)
         a, b = self.corners[1:3] - self.corners[:2]
         nodes, weights = np.polynomial.legendre.leggauss(points)
         s, t = (axis.ravel()[:, None] / 2 for axis in np.meshgrid(nodes, nodes, indexing="ij"))

@@ -91,6 +91,8 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
             yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
         elif parts[place].size is not None and "contact_area" in stated(friction):
             yield ("friction", "contact_area"), f"must not be given with local_contact and size in {where}"
+    if run.after_tipping == "ignore" and any(part.local_contact and part.face for part in parts.values()):
+        yield ("run", "after_tipping"), f'must be "stop" with local_contact = true in {where}; got "ignore"'
     if run.scheme == "paper" and any(part.local_contact for part in parts.values()):
         yield ("run", "scheme"), f'must be "events" or "fixed" with local_contact = true in {where}; got "paper"'
     motion = getattr(tables.plate, "motion", None)

@@ -92,7 +92,7 @@ class PartCase(Table):
     size: PositiveLength | None = Field(default=None, examples=["100 um"])
     """The side of a point's footprint, for checks and its local contact; without it the root of the contact area."""
     local_contact: bool = False
-    """Whether a rough contact follows its law point by point on the bent surface under that square."""
+    """Whether a rough contact follows its law point by point on the bent surface under the footprint or that square."""
     squeeze: Force = Field(default=0.0, ge=0)
     """A constant force that presses it onto the surface, along the normal."""
     centre_height: Length = Field(default_factory=_middle, ge=0, examples=["50 um"])
@@ -120,8 +120,8 @@ class PartCase(Table):
             yield "corners", f"must be {_CORNERS}"
         if "thickness" not in given:
             yield "thickness", f"is missing; with a footprint it must be {expected['thickness']}"
-        if "local_contact" in given:
-            yield "local_contact", "must not be given with a footprint, whose pressure is linear or uniform"
+        if given.get("local_contact") and given.get("pressure") == "uniform":
+            yield "pressure", 'must be "linear" with local_contact = true, which has a pressure of its own'
         if "size" in given:
             yield "size", f"must not be given with a footprint, which has {OUTLINES[kind]}"
         same = "density" in given and stated and math.isclose(given["mass"], _mass(dict(given)), rel_tol=1e-9)

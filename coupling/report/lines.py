@@ -27,6 +27,7 @@ MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)"
 PRESSURES: Final = {
     "linear": "linear over the face, to bear the moments",
     "uniform": "uniform over the face, whatever the moments",
+    "local": "by the gap at each point of the face, which tilts to bear the moments",
 }
 SLIPS = 1 - 1e-6  # of the friction limit: rounding must not decide whether it slips
 

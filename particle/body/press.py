@@ -29,7 +29,10 @@ from particle.types import FloatArray
 
 TURNS, HALVINGS, SETTLED = 300, 40, 1e-9  # steps of Newton, halvings of one, roughnesses: the next would be the square
 LONGEST, FASTER = 0.5, 0.1  # roughnesses, the longest step, and of the tilt, what it may be longer by
-STABLE, FLATTER = 1e-9, 1e-3  # of the largest stiffness: from where on the least counts as positive, and what it is made
+STABLE, FLATTER = (
+    1e-9,
+    1e-3,
+)  # of the largest stiffness: from where on the least counts as positive, and what it is made
 OPEN = 12.0  # roughnesses, from where on no asperity touches
 CLOSED = 1.0  # roughnesses, the least gap from which the search begins
 PULLS = 20  # halvings for the pull that ends contact
@@ -80,7 +83,9 @@ def pull_to_end(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> flo
     for _ in range(PULLS):
         middle = 0.5 * (low + high)
         p.pulled[0] = load[0] - middle
-        if press(law, face, p.pulled, p):
+        for i in range(3):
+            p.trial[i] = p.gap[i]
+        if _descend(law, face, p.pulled, p, 0.0):
             low = middle
         else:
             high = middle
@@ -182,7 +187,8 @@ def _fill_inverse(m: FloatArray, shift: float, out: FloatArray) -> None:
 def _descend(law: FrictionLaw, face: Face, load: FloatArray, p: Press, side: float) -> bool:
     """Newton's method from p.trial, downhill, to a least potential, into p.gap; False where it runs off.
 
-    On a ridge of the potential, where no force drives it, it goes to a side: 1 or -1.
+    On a ridge of the potential, where no force drives it, it goes to a side: 1 or -1. With a side of 0 it gives up where
+    the gap is not stable.
     """
     _fill_sums(law, face, load, p)
     for _ in range(TURNS):
@@ -190,13 +196,13 @@ def _descend(law: FrictionLaw, face: Face, load: FloatArray, p: Press, side: flo
         if not (math.isfinite(largest) and largest > 0.0) or p.closest > OPEN:
             return False
         p.stability = least / largest
+        if side == 0.0 and p.stability <= STABLE:
+            return False
         shift = 0.0 if p.stability > STABLE else FLATTER * largest - least
         _fill_inverse(p.stiffness, shift, p.inverse)
         longest = 0.0
         for i in range(3):
-            p.step[i] = -(
-                p.inverse[i, 0] * p.excess[0] + p.inverse[i, 1] * p.excess[1] + p.inverse[i, 2] * p.excess[2]
-            )
+            p.step[i] = -(p.inverse[i, 0] * p.excess[0] + p.inverse[i, 1] * p.excess[1] + p.inverse[i, 2] * p.excess[2])
             longest = max(longest, abs(p.step[i]))
         if longest < SETTLED:
             if shift == 0.0:

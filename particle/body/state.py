@@ -126,6 +126,7 @@ def fill_row(part: Part, face: Face, memory: Memory, mode: int, row: Row) -> Non
         find_rates(part, face, b.slip[0], b.slip[1], b.slip[2], b)
     f_1, f_2, _ = friction_wrench(part, b)
     row.load, row.friction = b.load[0], math.hypot(f_1, f_2)
-    row.pressure = least_pressure(face, b) / b.load[0] if b.load[0] != 0.0 else math.nan
+    linear = part.law.kind != LOCAL and b.load[0] != 0.0
+    row.pressure = least_pressure(face, b) / b.load[0] if linear else math.nan
     base = base_at(memory.local, time)
     row.kinetic, row.potential = energy_of(part, face, base, state[V_X], state[V_Y], state[SPIN], b)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from particle import (
     Body,
@@ -17,6 +18,8 @@ from particle import (
     simulate,
     simulate_many,
 )
+from particle.body.press import gaps
+from particle.friction.contact import ScaledFriction
 from particle.friction.local import LocalContact
 
 SIZE, MASS = 100e-6, 2e-9
@@ -73,6 +76,112 @@ def test_threads_bits_and_bodies(local):
     parts = [Micropart(MASS, (x, 0.0)) for x in (0.0, 3e-5)]
     one, two = (simulate_many(surface, parts, local, 2e-3, threads=threads) for threads in (1, 2))
     assert all((a.position == b.position).all() for a, b in zip(one, two, strict=True))
-    body = Body(Footprint.rectangle(SIZE, SIZE), 50e-6, MASS, position=(0.0, 0.0))
-    with pytest.raises(ValueError, match="must not be a LocalContact with a Body"):
-        simulate(surface, body, local, 1e-3)
+    face = Footprint.rectangle(2 * SIZE, SIZE / 2)
+    bodies = [Body(face, 50e-6, MASS, position=(x, 0.0), heading=0.3) for x in (0.0, 3e-5)]
+    law = LocalContact(KogutEtsion.paper(), face)
+    one, two = (simulate_many(surface, bodies, law, 2e-3, threads=threads) for threads in (1, 2))
+    assert all((a.position == b.position).all() for a, b in zip(one, two, strict=True))
+    assert all(len(path.events) > 1 for path in one)
+
+
+def test_what_does_not_go_together_is_refused(local):
+    surface, face = bent(-80.0, -20.0), Footprint.rectangle(SIZE, SIZE)
+    body = Body(face, 50e-6, MASS, position=(0.0, 0.0))
+    uniform = Body(face, 50e-6, MASS, position=(0.0, 0.0), pressure="uniform")
+    law = LocalContact(KogutEtsion.paper(), face)
+    with pytest.raises(ValueError, match="size of LocalContact must be the footprint of the Body"):
+        simulate(surface, body, ScaledFriction(local, 2.0), 1e-3)
+    with pytest.raises(ValueError, match="size of LocalContact must be the side of a square"):
+        simulate(surface, Micropart(MASS, (0.0, 0.0)), law, 1e-3)
+    with pytest.raises(ValueError, match="pressure of Body must be 'linear'"):
+        simulate(surface, uniform, law, 1e-3)
+    with pytest.raises(ValueError, match="after_tipping of simulate must be 'stop'"):
+        simulate(surface, body, law, 1e-3, after_tipping="ignore")
+    with pytest.raises(ValueError, match="friction must be a friction law"):
+        simulate(surface, body, 0.3, 1e-3)
+    around = [[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]]
+    with pytest.raises(ValueError, match="all of which its centroid sees"):
+        LocalContact(KogutEtsion.paper(), Footprint.polygon(np.array(around) * 3e-5))
+
+
+FACES = {
+    "bar": Footprint.rectangle(2e-4, 5e-5),
+    "disc": Footprint.disc(5e-5),
+    "L": Footprint.polygon(np.array([[0, 0], [10, 0], [10, 4], [4, 4], [4, 10], [0, 10]]) * 1e-5),
+    "triangle": Footprint.polygon(np.array([[0, 0], [12, 0], [3, 10]]) * 1e-5),
+}
+
+
+@pytest.mark.parametrize("name", FACES)
+def test_a_gap_bears_its_load_and_moments_at_least_potential_and_gives_the_friction_of_its_tractions(name):
+    face, contact, generator = FACES[name], KogutEtsion.paper(), np.random.default_rng(5)
+    law = LocalContact(contact, face)
+    bends = generator.normal(size=(12, 3)) * np.geomspace(1.0, 20.0, 12)[:, None]
+    loads = (
+        law.pull_off * generator.uniform([-0.1, -0.03, -0.03], [0.5, 0.03, 0.03], (12, 3)) * [1, face.reach, face.reach]
+    )
+    slips = np.column_stack([generator.normal(size=(12, 2)), generator.normal(size=12) / face.reach])
+    found = gaps(law.law, Body(face, 5e-5, MASS, position=(0.0, 0.0)).face(3, True), loads, bends, slips)
+    assert np.isfinite(found).all()
+    places, weights = face.rule(30)
+    x, y = places.T
+
+    def pressed(gap, bend):
+        sag = (bend[0] * x * x + 2 * bend[1] * x * y + bend[2] * y * y) / 2 / contact.roughness
+        load, adhesion, limit = contact.forces(gap[0] + (gap[1] * x + gap[2] * y) / face.reach - sag)
+        share = weights * face.area / contact.contact_area
+        return share * (load - adhesion), share * limit
+
+    for gap, force, load, bend, slip in zip(found[:, :3], found[:, 3:6], loads, bends, slips, strict=True):
+        net, limit = pressed(gap, bend)
+        borne = np.array([net.sum(), net @ y / face.reach, -net @ x / face.reach])
+        assert borne == pytest.approx(load / [1, face.reach, face.reach], abs=3e-5 * np.abs(net).sum())
+        by_gap = []
+        for step in 1e-4 * np.eye(3):
+            less, more = (pressed(gap + side * step, bend)[0] for side in (-1, 1))
+            change = (less - more) / 2e-4
+            by_gap.append([change.sum(), change @ x / face.reach, change @ y / face.reach])
+        assert np.linalg.eigvalsh((np.array(by_gap) + np.transpose(by_gap)) / 2).min() > 0
+        u = np.array([slip[0] - slip[2] * y, slip[1] + slip[2] * x])
+        pull = -limit * u / np.hypot(*u)
+        wrench = np.array([*pull.sum(axis=1), (x * pull[1] - y * pull[0]).sum() / face.reach])
+        assert force / [1, 1, face.reach] == pytest.approx(wrench, abs=3e-3 * limit.sum())
+
+
+def test_a_face_rocks_off_a_hump_where_it_does_not_stiffen_against_a_tilt_any_more(local):
+    contact, face = KogutEtsion.paper(), Footprint.rectangle(SIZE, SIZE)
+    places, weights = face.rule(40)
+    sag, x = 40 * (places**2).sum(axis=1) / contact.roughness, places[:, 0]
+
+    def net(z):
+        load, adhesion, _ = contact.forces(z + sag)
+        return weights * SIZE**2 / contact.contact_area * (load - adhesion)
+
+    def stiffness(z):
+        return ((net(z - 1e-3) - net(z + 1e-3)) @ x**2) / SIZE**2
+
+    z = brentq(stiffness, 3.0, 4.5, xtol=1e-10)
+    borne = -net(z).sum()
+    assert 0.3 < borne / local.on_surface(np.diag([-80.0, -80.0])).pull_off < 0.6
+    body, law = Body(face, 1e-9, MASS, position=(0.0, 0.0)), LocalContact(contact, face)
+    for share, outcome in ((0.998, Outcome.STUCK), (1.002, Outcome.TIPPED)):
+        lift = share * borne / MASS
+        assert simulate(bent(-80.0, -80.0), body, law, 1e-3, gravity=(0.0, 0.0, lift)).outcome is outcome
+
+
+@pytest.mark.parametrize("bend", [(-20.0, -20.0), (10.0, -30.0)])
+def test_a_face_that_bears_no_moments_goes_by_the_law_of_one_curvature_tabulated(bend):
+    heading, face = 0.5, Footprint.rectangle(1.2e-4, 0.8e-4)
+    turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+    surface, law = bent(*bend, Drive(8e-6, 200.0, cycle="sine")), LocalContact(KogutEtsion.paper(), face)
+    one = law.on_surface(turn.T @ np.diag(bend) @ turn)
+    loads = np.concatenate([[-one.pull_off], np.linspace(-5e-9, 5e-8, 34)])
+    table = FrictionTable(loads, one.friction_limit(loads))
+    parts = [Body(face, 1e-9, MASS, position=(2e-5, 1e-5), heading=heading, pressure=p) for p in ("uniform", "linear")]
+    other, path = (
+        simulate(surface, part, by, 20e-3, tolerance=1e-8) for part, by in zip(parts, (table, law), strict=True)
+    )
+    assert [event.kind for event in path.events] == [event.kind for event in other.events] and len(path.events) >= 8
+    assert [event.time for event in path.events] == pytest.approx([event.time for event in other.events], abs=1e-8)
+    assert path.position[-1] == pytest.approx(other.position[-1], abs=1e-10)
+    assert np.hypot(*(path.position[-1] - parts[0].position)) > 2e-8
