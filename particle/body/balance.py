@@ -341,7 +341,7 @@ def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b:
 
 @device_no_arrays
 def _fill_system(part: Part, b: Balance) -> None:
-    """[p_u - (W' + P) n_u] u = W - W' L + (W' + P) n_0 - p_0 with W linear around the load L = b.load, into b.matrix."""
+    """[p_u - (W' + P) n_u] u = W - W' L + (W' + P) n_0 - p_0, W linear around the load L = b.load, into b.matrix."""
     f, w, load = b.forces, b.friction, b.load
     for i in range(3):
         right = w[i, 0] - w[i, 1] * (load[0] - part.squeeze) - w[i, 2] * load[1] - w[i, 3] * load[2]

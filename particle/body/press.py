@@ -97,7 +97,8 @@ def pull_to_end(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> flo
 def gaps(law: FrictionLaw, face: Face, loads: FloatArray, bends: FloatArray, slips: FloatArray) -> FloatArray:
     """The gap z, t, friction's wrench against a slip, and the pull to the end of contact; rows (n, 7), apart.
 
-    Under loads (N, M_1, M_2) (n, 3) on surfaces with xx, xy, yy of H (n, 3) against slips (n, 3); nan where it has ended.
+    Under loads (N, M_1, M_2) (n, 3) on surfaces with xx, xy, yy of H (n, 3) against slips (n, 3); nan where contact has
+    ended.
     """
     out, wrenches, friction = np.full((len(loads), 7), np.nan), np.zeros((3, 3)), np.zeros((3, 4))
     p = np.zeros(1, PRESS)[0]
@@ -187,8 +188,8 @@ def _fill_inverse(m: FloatArray, shift: float, out: FloatArray) -> None:
 def _descend(law: FrictionLaw, face: Face, load: FloatArray, p: Press, side: float) -> bool:
     """Newton's method from p.trial, downhill, to a least potential, into p.gap; False where it runs off.
 
-    On a ridge of the potential, where no force drives it, it goes to a side: 1 or -1. With a side of 0 it gives up where
-    the gap is not stable.
+    On a ridge of the potential, where no force drives it, it goes to a side: 1 or -1. With a side of 0 it gives up
+    where the gap is not stable.
     """
     _fill_sums(law, face, load, p)
     for _ in range(TURNS):

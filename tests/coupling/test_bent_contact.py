@@ -96,6 +96,28 @@ def test_a_run_s_margins_are_those_of_the_local_law():
     assert not any("flat faces" in text for text in warnings(result.summary))
 
 
+def test_a_face_s_run_follows_the_local_law_with_margins_of_its_own():
+    face = {"footprint": "rectangle", "sides": ["95 um", "60 um"], "thickness": "0.5 um", "local_contact": True}
+    part = {"mass": "2e-9 kg", "position": ["-120 um", "-80 um"], "heading": "90 deg"} | face
+    case = Case.model_validate(PLATE | {"part": part})
+    result = run_case(case)
+    s, law = result.summary, build_friction(case)
+    assert (s.outcome, s.pressure, s.least_pressure) == ("stuck", "local", None)
+    assert not any("flat faces" in text for text in warnings(s))
+    (x, y), weights = case.part.face.rule(8)[0].T, case.part.face.rule(8)[1]
+    places = np.column_stack([-y, x]) + case.part.position
+    h = weights @ result.scene.surface.evaluate_along(places, np.full(len(x), s.margins.slip.time)).hessian.reshape(
+        -1, 4
+    )
+    h = h.reshape(2, 2)
+    at = result.trajectory.contact_at([s.margins.slip.time])
+    turned = law.on_surface([[h[1, 1], -h[0, 1]], [-h[0, 1], h[0, 0]]])
+    needed = np.linalg.norm(at.friction[0])
+    assert s.margins.slip.value == pytest.approx(needed / turned.friction_limit(at.normal_force[0]), rel=2e-3)
+    borne = at.normal_force[0] + law.pull_off - at.bend_loss[0]
+    assert 0.2 * turned.pull_off < borne < turned.pull_off + at.normal_force[0]
+
+
 @pytest.mark.parametrize(
     ("tables", "words"),
     [

@@ -79,9 +79,10 @@ def test_threads_bits_and_bodies(local):
     face = Footprint.rectangle(2 * SIZE, SIZE / 2)
     bodies = [Body(face, 50e-6, MASS, position=(x, 0.0), heading=0.3) for x in (0.0, 3e-5)]
     law = LocalContact(KogutEtsion.paper(), face)
+    surface = bent(-10.0, 5.0, Drive(5e-6, 1500.0, cycle="sine"))
     one, two = (simulate_many(surface, bodies, law, 2e-3, threads=threads) for threads in (1, 2))
     assert all((a.position == b.position).all() for a, b in zip(one, two, strict=True))
-    assert all(len(path.events) > 1 for path in one)
+    assert all(path.events and path.heading[-1] != 0.3 for path in one)
 
 
 def test_what_does_not_go_together_is_refused(local):
@@ -171,13 +172,12 @@ def test_a_face_rocks_off_a_hump_where_it_does_not_stiffen_against_a_tilt_any_mo
 
 @pytest.mark.parametrize("bend", [(-20.0, -20.0), (10.0, -30.0)])
 def test_a_face_that_bears_no_moments_goes_by_the_law_of_one_curvature_tabulated(bend):
-    heading, face = 0.5, Footprint.rectangle(1.2e-4, 0.8e-4)
-    turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    surface, law = bent(*bend, Drive(8e-6, 200.0, cycle="sine")), LocalContact(KogutEtsion.paper(), face)
-    one = law.on_surface(turn.T @ np.diag(bend) @ turn)
+    heading, face = np.pi / 2, Footprint.rectangle(1.2e-4, 0.8e-4)
+    surface, law = bent(*bend, Drive(14e-6, 200.0, cycle="sine")), LocalContact(KogutEtsion.paper(), face)
+    one = law.on_surface(np.diag(bend[::-1]))
     loads = np.concatenate([[-one.pull_off], np.linspace(-5e-9, 5e-8, 34)])
     table = FrictionTable(loads, one.friction_limit(loads))
-    parts = [Body(face, 1e-9, MASS, position=(2e-5, 1e-5), heading=heading, pressure=p) for p in ("uniform", "linear")]
+    parts = [Body(face, 1e-9, MASS, position=(2e-5, 0.0), heading=heading, pressure=p) for p in ("uniform", "linear")]
     other, path = (
         simulate(surface, part, by, 20e-3, tolerance=1e-8) for part, by in zip(parts, (table, law), strict=True)
     )
