@@ -12,7 +12,7 @@ import numpy as np
 
 from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
 from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
-from coupling.part import build_friction, build_part, friction_law, local_size
+from coupling.part import build_friction, build_part, friction_law, friction_of, local_size
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import doing, silent
 from coupling.result import Result
@@ -106,7 +106,7 @@ class Trials:
         # A drive that does not even repeat itself once carries nothing along.
         self.least_factor = LEAST if self.rings else min(1.0, TURNS * 2 * shortest / self.case.run.duration)
         # Tabulating a law takes a while.
-        table, size = self.case.friction, local_size(self.case)
+        table, size = friction_of(self.case), local_size(self.case)
         self.law_of_index = cache(lambda index: friction_law(with_index(table, index), size))
 
     def law(self, setting: Setting) -> Contact:

@@ -299,12 +299,12 @@ def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Ba
 
     Beyond the end of a local contact friction goes on as at the last gap.
     """
-    local = part.law.kind == LOCAL
+    local = borne = part.law.kind == LOCAL
     if not local:
         fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
     for _ in range(MOST_PASSES):
-        if local:
-            press(part.law, face, b.load, b)
+        if borne:
+            borne = press(part.law, face, b.load, b)
         fill_friction(part, face, s_1, s_2, s_3, b)
         n, m_1, m_2 = b.load[0], b.load[1], b.load[2]
         _fill_system(part, b)

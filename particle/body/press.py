@@ -6,8 +6,8 @@ Over a surface whose second derivatives in the body's axes are H, the gap under 
 
 and (z, t) makes the potential int psi(d) dA + N z + M.t least, psi' = a - p: it bears the load N = int (p - a) dA and
 its moments M = int (p - a) rho/R dA. There may be several such gaps, and none beyond the end of contact. The one taken
-is reached from the last by Newton's method, downhill in the potential, or else from a gap that is closed. Where the
-face stands on a ridge of the potential it tilts to either side of it.
+is reached from the last by Newton's method, downhill in the potential; the first from a gap that is closed. Where the
+face stands on a ridge of the potential it tilts to a side of it.
 
 Tractions q(d) give friction's wrench as in `wrench`: q and its gradient at the centre of rotation, or on the face's rim
 towards it, in closed form, and what is left, which vanishes there, by the rule over the face.
@@ -27,7 +27,7 @@ from particle.jit import device_no_arrays, jit
 from particle.records import Record, record_type
 from particle.types import FloatArray
 
-TURNS, HALVINGS, SETTLED = 300, 40, 1e-9  # steps of Newton, halvings of one, roughnesses: the next would be the square
+TURNS, HALVINGS, SETTLED = 100, 40, 1e-9  # steps of Newton, halvings of one, roughnesses: the next would be the square
 LONGEST, FASTER = 0.5, 0.1  # roughnesses, the longest step, and of the tilt, what it may be longer by
 STABLE, FLATTER = (
     1e-9,
@@ -64,8 +64,7 @@ def press(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> bool:
     if p.stands == 1:
         for i in range(3):
             p.trial[i] = p.gap[i]
-        if _descend(law, face, load, p, 1.0):
-            return True
+        return _descend(law, face, load, p, 1.0)
     for side in (1.0, -1.0):
         p.trial[0], p.trial[1], p.trial[2] = CLOSED + _highest(law, p), 0.0, 0.0
         if _descend(law, face, load, p, side):
