@@ -5,9 +5,9 @@ Over a surface whose second derivatives in the body's axes are H, the gap under 
     d(rho) = z + t.rho/R - rho.H rho/(2 sigma),      R the reach of the face
 
 and (z, t) makes the potential int psi(d) dA + N z + M.t least, psi' = a - p: it bears the load N = int (p - a) dA and
-its moments M = int (p - a) rho/R dA. There may be several such gaps, and none beyond the end of contact. The one taken
-is reached from the last by Newton's method, downhill in the potential; the first from a gap that is closed. Where the
-face stands on a ridge of the potential it tilts to a side of it.
+its moments M = int (p - a) rho/R dA. There may be several such gaps. The first is reached from a closed one by Newton's
+method, downhill in the potential; from a ridge of it the face tilts to a side. From then on the gap is followed, and
+contact ends where it is stable no more: the face comes off, or rocks over, which no path follows.
 
 Tractions q(d) give friction's wrench as in `wrench`: q and its gradient at the centre of rotation, or on the face's rim
 towards it, in closed form, and what is left, which vanishes there, by the rule over the face.
@@ -64,12 +64,21 @@ def press(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> bool:
     if p.stands == 1:
         for i in range(3):
             p.trial[i] = p.gap[i]
-        return _descend(law, face, load, p, 1.0)
+        return _descend(law, face, load, p, 0.0)
     for side in (1.0, -1.0):
         p.trial[0], p.trial[1], p.trial[2] = CLOSED + _highest(law, p), 0.0, 0.0
         if _descend(law, face, load, p, side):
             return True
     return False
+
+
+@device_no_arrays
+def comes_off(p: Press) -> bool:
+    """Whether a gap that was not stable opens rather than tilts."""
+    least, largest = _eigenvalues(p.stiffness)
+    _fill_inverse(p.stiffness, FLATTER * largest - least, p.inverse)
+    _fill_ridge(p.inverse, 1.0, p.step)
+    return abs(p.step[0]) > max(abs(p.step[1]), abs(p.step[2]))
 
 
 @device_no_arrays

@@ -17,7 +17,7 @@ from particle.body.balance import (
 )
 from particle.body.face import Face
 from particle.body.memory import HEADING, LOSS, SPIN, V_X, V_Y, WORK, Memory, X, Y
-from particle.body.press import OPEN, press
+from particle.body.press import comes_off, press
 from particle.drives import evaluate_piece
 from particle.events import Row
 from particle.events.mechanics import Part
@@ -107,7 +107,7 @@ def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: 
     if part.law.kind == LOCAL and load <= part.law.largest_load:
         b = memory.balance[0]
         press(part.law, face, b.load, b)
-        return Verdict.DETACHED if b.closest > OPEN else Verdict.TIPPED
+        return Verdict.DETACHED if comes_off(b) else Verdict.TIPPED
     return Verdict.OVERLOADED if load > part.law.largest_load else Verdict.TIPPED
 
 
