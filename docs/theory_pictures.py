@@ -16,6 +16,7 @@ from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
 from coupling.case import Case
 from coupling.pictures import draw_path, draw_plate, draw_window, path_window, portrait_of
+from coupling.pictures.run import draw_outlines, outlines_of
 
 DOCS = Path(__file__).parent
 CASES = ("transport", "two_actuators")
@@ -39,7 +40,8 @@ def end(summary: PlateSummary) -> str:
 def draw(results: list[Result]) -> Figure:
     """Both paths over their plates; short ones in windows of the same frame, beside the whole plate."""
     portraits = [portrait_of(result) for result in results]
-    both = np.concatenate([one.samples.position for one in portraits])
+    outlines = [outlines_of(one.case, one.samples, one.rows) for one in portraits]
+    both = np.concatenate([one.samples.position for one in portraits] + [some.reshape(-1, 2) for some in outlines])
     plate = portraits[0].plate
     assert plate is not None
     window = path_window(both, plate.outline.box, plate.actuators)
@@ -54,10 +56,11 @@ def draw(results: list[Result]) -> Figure:
         draw_window(whole, unit, window)
         whole.set_title(f"The plate at {portraits[0].when}\n{THEORIES['linear']}", fontsize=10)
     unit = unit_for(frame, "m")
-    for axes, one, result in zip(panels, portraits, results, strict=True):
+    for axes, one, result, some in zip(panels, portraits, results, outlines, strict=True):
         assert one.plate is not None and isinstance(result.summary, PlateSummary)
         keys += draw_plate(axes, one.plate, unit, frame)
         keys = draw_path(axes, one.rows, one.samples.position, unit, frame) + keys
+        draw_outlines(axes, some, unit)
         axes.set_title(
             f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10
         )
