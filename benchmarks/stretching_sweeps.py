@@ -5,7 +5,7 @@
     .venv/bin/python benchmarks/stretching_sweeps.py --whole       also whole sweeps, from study to results
 
 Random strokes, frequencies, delays and starts around examples/transport.toml, so that no two points share drives. The
-part is a point that adheres by 1.3 uN with a coefficient of friction of 0.05, so that none comes off a linear plate. The
+part is a point that adheres by 1.3 uN with a coefficient of friction of 0.05: none comes off a linear plate. The
 reduced model is made, or read from disk, before the clock runs. First the linear paths must be those of single runs to
 the bit, and the others those of single runs, each with a model of its own, to `AGREEMENT` of their length. Then blocks
 of both sweeps take turns.

@@ -1,6 +1,7 @@
 """Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load.
 
-And docs/contact_faces.png: a cube on the main job's plate with that contact, as a point, a face, and a point with a local contact.
+And docs/contact_faces.png: a cube on the main job's plate with that contact, as a point, a face, and a point with a
+local contact.
 """
 
 from pathlib import Path
