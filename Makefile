@@ -52,9 +52,10 @@ coverage: forget-coverage test
 forget-coverage:
 	rm -f .coverage
 
-# Compiled once, on one processor, before several processes would do so at a time.
+# Compiled once, on one processor, before several processes would do so at a time: those of a face and of a point.
 kernels: .venv/developer
 	@$(BIN)/active-surface run examples/transport.toml --quiet --output build/kernels
+	@$(BIN)/active-surface run examples/two_actuators.toml --quiet --output build/kernels
 
 lint: .venv/developer
 	$(BIN)/ruff check .

@@ -72,7 +72,9 @@ def problems() -> list[Problem]:
     squeezed = read_case(EXAMPLES / "shaker.toml").vary(
         {"friction": {"model": "coulomb", "coefficient": 0.8}, "part.squeeze": "30 nN"}
     )
-    plate = read_case(EXAMPLES / "transport.toml").vary({"run.duration": "12 ms"})
+    point = {"mass": "2e-9 kg", "centre_height": "45 um", "position": ["-120 um", "-80 um"]}
+    changes = {"part": point, "friction.adhesion": "0.65 uN", "run.duration": "12 ms", "run.tolerance": 1e-9}
+    plate = read_case(EXAMPLES / "transport.toml").vary(changes)
     short = plate.vary({"run.duration": "4 ms"})
     both, shaken = ("friction.coefficient", "friction.adhesion"), ((squeezed,), ("part.squeeze",), (1e-3,), 81)
     tables = conveyor("50 Hz", "5 nN"), conveyor("60 Hz", "10 nN")

@@ -9,7 +9,7 @@ from active_surface.views import still
 from coupling import read_case, run_case
 
 ROOT = Path(__file__).parent.parent
-MOMENT = 63.5e-3  # s
+MOMENT = 43.5e-3  # s
 
 
 def draw_animation() -> None:

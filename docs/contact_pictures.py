@@ -1,6 +1,7 @@
 """Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load.
 
-And docs/contact_faces.png: the main job with that contact, of a point, of a face, and of a point with a local contact.
+And docs/contact_faces.png: a cube on the main job's plate with that contact, as a point, a face, and a point with a
+local contact.
 """
 
 from pathlib import Path
@@ -40,7 +41,7 @@ def draw_contact() -> None:
 
 STROKES = ("10 um", "5 um")
 FLAT = {"size": "95 um"}
-PARTS = {  # of the main job's cube; colours
+PARTS = {  # of a cube; colours
     "a point": (FLAT, "black"),
     "a face of 95 µm": ({"footprint": "rectangle", "sides": ["95 um", "95 um"], "thickness": "90 um"}, "#1b4f9c"),
     "a point, contact local under 95 µm": ({"size": "95 um", "local_contact": True}, "#c8371b"),
@@ -67,10 +68,10 @@ def draw_faces() -> None:
 
 
 def main_job(part: dict[str, object], stroke: str) -> Case:
-    """The main job with the rough contact of the preset "paper" and another part."""
+    """The main job's plate with the rough contact of the preset "paper" and a cube of 2 ug."""
     base = read_case(PAGE.parent / "examples/transport.toml")
     drives = [{"position": one.position, "stroke": stroke, "frequency": one.frequency} for one in base.actuators]
-    cube = {"mass": base.part.mass, "position": base.part.position, "centre_height": base.part.centre_height}
+    cube = {"mass": 2e-9, "position": base.part.position, "centre_height": 45e-6}
     return Case(
         plate=base.plate,
         actuators=drives,

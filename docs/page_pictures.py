@@ -23,7 +23,7 @@ def draw_pages() -> None:
     with TemporaryDirectory() as folder:
         run_case(read_case(ROOT / "examples/transport.toml"), output=folder)
         page = write_run_page(read_run(Path(folder, "transport")), Path(folder, "run.html"))
-        _shoot(chromium, f"{page.as_uri()}#t=63.5", ROOT / "docs/page.png")
+        _shoot(chromium, f"{page.as_uri()}#t=43.5", ROOT / "docs/page.png")
         study = read_study(ROOT / "examples/studies/frequency_stroke.toml")
         sweep = write_study_page(study, run_study(study).dataset, Path(folder, "sweep.html"))
         _shoot(chromium, sweep.as_uri(), ROOT / "docs/page_sweep.png")

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
@@ -36,10 +37,19 @@ def end(summary: PlateSummary) -> str:
     return f"end ({x:.2f}, {y:.2f}) µm: {summary.outcome}{AFTER[summary.at_rest_since is None]} {MILLI * since:.4g} ms"
 
 
+def outlines_at_ends(result: Result) -> NDArray[np.float64]:
+    """The outlines (2, k, 2) [m] of a part's face at the start and at the end; of a point none."""
+    face, path = result.case.part.face, result.trajectory
+    if face is None or path.heading is None:
+        return np.empty((0, 0, 2))
+    return face.outline(path.position[[0, -1]], path.heading[[0, -1]])
+
+
 def draw(results: list[Result]) -> Figure:
     """Both paths over their plates; short ones in windows of the same frame, beside the whole plate."""
     portraits = [portrait_of(result) for result in results]
-    both = np.concatenate([one.samples.position for one in portraits])
+    outlines = [outlines_at_ends(result) for result in results]
+    both = np.concatenate([one.samples.position for one in portraits] + [some.reshape(-1, 2) for some in outlines])
     plate = portraits[0].plate
     assert plate is not None
     window = path_window(both, plate.outline.box, plate.actuators)
@@ -54,10 +64,12 @@ def draw(results: list[Result]) -> Figure:
         draw_window(whole, unit, window)
         whole.set_title(f"The plate at {portraits[0].when}\n{THEORIES['linear']}", fontsize=10)
     unit = unit_for(frame, "m")
-    for axes, one, result in zip(panels, portraits, results, strict=True):
+    for axes, one, result, some in zip(panels, portraits, results, outlines, strict=True):
         assert one.plate is not None and isinstance(result.summary, PlateSummary)
         keys += draw_plate(axes, one.plate, unit, frame)
         keys = draw_path(axes, one.rows, one.samples.position, unit, frame) + keys
+        for corners in some * unit.per_si:
+            axes.fill(*corners.T, fill=False, linewidth=1.2, zorder=2.8)
         axes.set_title(
             f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10
         )

@@ -21,8 +21,8 @@ SILICON = "5 µm thick, Young's modulus 169 GPa"
     ],
 )
 def test_a_device_is_said_in_words(name, plate, count):
-    wide = ", 95 µm wide" if name == "transport" else ""
-    said = f"{plate}, pushed from below by {count} actuators to move a part of 2 µg{wide}"
+    part = "2.01 µg" if name == "transport" else "2 µg"
+    said = f"{plate}, pushed from below by {count} actuators to move a part of {part}"
     assert device(read_case(EXAMPLES / f"{name}.toml")) == said
 
 

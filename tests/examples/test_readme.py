@@ -32,7 +32,7 @@ def test_main_job_prints_the_lines_of_the_readme(tmp_path):
     printed = CliRunner().invoke(main, ["run", str(case), "--output", str(tmp_path)]).output
     lines = [FIGURE.sub("#", line) for line in printed.splitlines()]
     shown = re.search(r"```\n(outcome .*?)```", README, flags=re.DOTALL)[1].splitlines()
-    assert len(shown) == 6
+    assert len(shown) == 6 and shown[2].startswith("turn ")
     assert [line for line in shown if FIGURE.sub("#", line) not in lines] == []
     assert "warning" not in printed  # the run is within all bounds of the model
     # The model stretches to 1e-5 of the plate's height, which moves the path's end by less than 2e-3 um.
