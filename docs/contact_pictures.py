@@ -1,7 +1,6 @@
 """Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load.
 
-And docs/contact_faces.png: a cube on the main job's plate with that contact, as a point, a face, and a point with a
-local contact.
+And docs/contact_faces.png: parts with that contact as a point and a face, each by the flat law and the local one.
 """
 
 from pathlib import Path
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from coupling import Case, build_friction, build_surface, follow_part, read_case
-from particle import KogutEtsion
+from particle import KogutEtsion, Outcome
 
 PAGE = Path(__file__).parent
 MICRO = 1e6
@@ -39,46 +38,65 @@ def draw_contact() -> None:
     figure.savefig(PAGE / "contact.png", dpi=100)
 
 
-STROKES = ("10 um", "5 um")
-FLAT = {"size": "95 um"}
-PARTS = {  # of a cube; colours
-    "a point": (FLAT, "black"),
-    "a face of 95 µm": ({"footprint": "rectangle", "sides": ["95 um", "95 um"], "thickness": "90 um"}, "#1b4f9c"),
-    "a point, contact local under 95 µm": ({"size": "95 um", "local_contact": True}, "#c8371b"),
+CUBE = {"footprint": "rectangle", "sides": ["95 um", "95 um"], "thickness": "90 um"}
+CHIP = {"footprint": "rectangle", "sides": ["100 um", "100 um"], "thickness": "20 um"}
+LOCAL = {"local_contact": True}
+CASES = {  # title: the example, its strokes, the part with a face, how long
+    "main job's plate, strokes of 10 µm, a cube": ("transport", "10 um", CUBE, "20 ms"),
+    "the same, strokes of 5 µm": ("transport", "5 um", CUBE, "20 ms"),
+    "outside the theory: the paper's case, a chip": ("two_actuators", "150 um", CHIP, "50 ms"),
 }
+COLOURS = {
+    "a point": "black",
+    "a face": "#1b4f9c",
+    "a point, local contact": "#c8371b",
+    "a face, local contact": "#2a8a4a",
+}
+ENDS = {Outcome.TIPPED: "tips", Outcome.DETACHED: "comes off"}
 
 
 def draw_faces() -> None:
-    figure = Figure(figsize=(12.0, 4.6))
+    figure = Figure(figsize=(15.0, 4.8))
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.12)
-    for axes, stroke in zip(figure.subplots(1, 2, sharey=True), STROKES, strict=True):
-        for label, (part, colour) in PARTS.items():
-            case = main_job(part, stroke)
+    for axes, (title, chosen) in zip(figure.subplots(1, 3), CASES.items(), strict=True):
+        for label, case in cases(*chosen).items():
             path = follow_part(case, build_surface(case), build_friction(case))
             times = np.linspace(0.0, path.time[-1], 1001)
             way = np.hypot(*(path.at(times).position - path.position[0]).T)
-            axes.plot(times * 1e3, way * MICRO, color=colour, linewidth=1.5, label=f"{label}: {way[-1] * MICRO:.3g} µm")
-        axes.set_title(f"strokes of {stroke.replace('um', 'µm')}", fontsize=11)
+            end = f", {ENDS[path.outcome]} at {path.time[-1] * 1e3:.3g} ms" if path.outcome in ENDS else ""
+            line = {"color": COLOURS[label], "linewidth": 1.5, "label": f"{label}: {way[-1] * MICRO:.3g} µm{end}"}
+            axes.plot(times * 1e3, way * MICRO, **line)
+            if end:
+                axes.plot(path.time[-1] * 1e3, way[-1] * MICRO, "x", color=COLOURS[label], markersize=8, clip_on=False)
+        axes.set_title(title, fontsize=11)
         axes.set_xlabel("time [ms]")
         axes.grid(alpha=0.3)
+        axes.set_ylim(0.0, 1.45 * axes.get_ylim()[1])
         axes.legend(loc="upper left", fontsize=9)
     figure.axes[0].set_ylabel("distance from the start [µm]")
     figure.savefig(PAGE / "contact_faces.png", dpi=100)
 
 
-def main_job(part: dict[str, object], stroke: str) -> Case:
-    """The main job's plate with the rough contact of the preset "paper" and a cube of 2 ug."""
-    base = read_case(PAGE.parent / "examples/transport.toml")
+def cases(name: str, stroke: str, face: dict[str, object], duration: str) -> dict[str, Case]:
+    """An example's plate and start with the rough contact of the preset "paper" and four parts of 2 ug."""
+    base = read_case(PAGE.parent / f"examples/{name}.toml")
     drives = [{"position": one.position, "stroke": stroke, "frequency": one.frequency} for one in base.actuators]
-    cube = {"mass": 2e-9, "position": base.part.position, "centre_height": 45e-6}
-    return Case(
-        plate=base.plate,
-        actuators=drives,
-        part=cube | part,
-        friction={"model": "kogut-etsion", "preset": "paper"} | ({"contact_area": 95e-6**2} if part == FLAT else {}),
-        run={"duration": "20 ms"},
-    )
+    side = float(face["sides"][0].split()[0]) * 1e-6  # type: ignore[index]
+    height = float(str(face["thickness"]).split()[0]) * 0.5e-6
+    point, flat = {"size": side, "centre_height": height}, {"contact_area": side**2}
+    parts = {"a point": (point, flat), "a face": (face, {})}
+    parts |= {"a point, local contact": (point | LOCAL, {}), "a face, local contact": (face | LOCAL, {})}
+    return {
+        label: Case(
+            plate=base.plate,
+            actuators=drives,
+            part={"mass": 2e-9, "position": base.part.position} | part,
+            friction={"model": "kogut-etsion", "preset": "paper"} | area,
+            run={"duration": duration},
+        )
+        for label, (part, area) in parts.items()
+    }
 
 
 def _draw_forces(axes: Axes) -> None:
