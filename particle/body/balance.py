@@ -304,7 +304,7 @@ def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Ba
         fill_wrenches(face, s_1, s_2, s_3, b.wrenches)
     for _ in range(MOST_PASSES):
         if borne:
-            borne = press(part.law, face, b.load, b)
+            borne = press(part.law, face, b.load, b, False)
         fill_friction(part, face, s_1, s_2, s_3, b)
         n, m_1, m_2 = b.load[0], b.load[1], b.load[2]
         _fill_system(part, b)

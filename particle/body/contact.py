@@ -56,6 +56,7 @@ def face_states(
         found.z = y[2] + part.contact * found.normal_z
         found.centre_x, found.centre_y = x + part.centre * found.normal_x, y_ + part.centre * found.normal_y
         found.centre_z = y[2] + part.centre * found.normal_z
+        b.stands = 0  # rows are in any order
         for i in range(3):
             b.rates[i] = 0.0
         if row.mode == Mode.SLIDING and slip_speed(face, memory) > 0.0:

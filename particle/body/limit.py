@@ -73,7 +73,7 @@ def gauge(part: Part, face: Face, b: Balance, s: Search) -> float:
     Newton's method for the least D on the plane -W.xi = 1.
     """
     if part.law.kind == LOCAL:
-        press(part.law, face, b.load, b)
+        press(part.law, face, b.load, b, True)
     c = face.arm
     w_1, w_2, w_3 = s.needed[0], s.needed[1], s.needed[2] / c
     size = math.sqrt(w_1 * w_1 + w_2 * w_2 + w_3 * w_3)

@@ -128,7 +128,7 @@ def _rest(surface: Surface, request: Request, face: Face, memory: Memory) -> int
     state[WORK] += kinetic + potential
     if leaves > now.span_end:
         return NO_EVENT
-    if contact_margin(part, face, memory) < 0.0:
+    if contact_margin(part, face, memory, True) < 0.0:
         now.verdict = end_reason(surface, part, face, memory, state)
         return NO_EVENT
     return EventKind.SLIPS.value

@@ -39,6 +39,7 @@ class Step(Record):
     before: float  # s, the last step
     speed: float  # m/s, of the slip as a step begins
     carried: Annotated[FloatArray, 6]  # the face's carried twist before a breakpoint
+    gap: Annotated[FloatArray, 3]  # of a local contact as a step begins
 
 
 class Memory(NamedTuple):

@@ -6,8 +6,8 @@ Over a surface whose second derivatives in the body's axes are H, the gap under 
 
 and (z, t) makes the potential int psi(d) dA + N z + M.t least, psi' = a - p: it bears the load N = int (p - a) dA and
 its moments M = int (p - a) rho/R dA. There may be several such gaps. The first is reached from a closed one by Newton's
-method, downhill in the potential; from a ridge of it the face tilts to a side. From then on the gap is followed, and
-contact ends where it is stable no more: the face comes off, or rocks over, which no path follows.
+method, downhill in the potential; from a ridge of it the face tilts to a side. From then on a sliding part's gap is
+followed, and contact ends where it is stable no more: the face comes off, or rocks over, which no path follows.
 
 Tractions q(d) give friction's wrench as in `wrench`: q and its gradient at the centre of rotation, or on the face's rim
 towards it, in closed form, and what is left, which vanishes there, by the rule over the face.
@@ -59,12 +59,18 @@ PRESS = record_type(Press)
 
 
 @device_no_arrays
-def press(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> bool:
-    """Find the gap (z, t) under the load (N, M_1, M_2) into p.gap; False where the contact has ended."""
+def press(law: FrictionLaw, face: Face, load: FloatArray, p: Press, anew: bool) -> bool:
+    """Find the gap (z, t) under the load (N, M_1, M_2) into p.gap; False where the contact has ended.
+
+    anew: whether to look from a closed gap, too, where the last cannot be followed to it.
+    """
     if p.stands == 1:
         for i in range(3):
             p.trial[i] = p.gap[i]
-        return _descend(law, face, load, p, 0.0)
+        if _descend(law, face, load, p, 0.0):
+            return True
+        if not anew:
+            return False
     for side in (1.0, -1.0):
         p.trial[0], p.trial[1], p.trial[2] = CLOSED + _highest(law, p), 0.0, 0.0
         if _descend(law, face, load, p, side):
@@ -84,7 +90,7 @@ def comes_off(p: Press) -> bool:
 @device_no_arrays
 def pull_to_end(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> float:
     """The pull [N] that ends the contact if it is added to a load, at its moments; 0 where it has ended already."""
-    if not press(law, face, load, p):
+    if not press(law, face, load, p, True):
         return 0.0
     low, high = 0.0, max(load[0] + law.pull_off, 0.0)
     p.pulled[1], p.pulled[2] = load[1], load[2]
@@ -97,7 +103,7 @@ def pull_to_end(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> flo
             low = middle
         else:
             high = middle
-    press(law, face, load, p)
+    press(law, face, load, p, True)
     return low
 
 
@@ -113,7 +119,7 @@ def gaps(law: FrictionLaw, face: Face, loads: FloatArray, bends: FloatArray, sli
     for n in range(len(loads)):
         p.bend[:] = bends[n]
         p.stands = 0
-        if press(law, face, loads[n], p):
+        if press(law, face, loads[n], p, True):
             fill_pressed_friction(law, face, slips[n, 0], slips[n, 1], slips[n, 2], p, wrenches, friction)
             for i in range(3):
                 out[n, i], out[n, 3 + i] = p.gap[i], friction[i, 0]

@@ -42,7 +42,7 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
     b, s = memory.balance[0], memory.search[0]
     if not settle(part, face, memory, memory.step[0].state, time):
         return math.nan
-    margin = contact_margin(part, face, memory)
+    margin = contact_margin(part, face, memory, True)
     if margin < 0.0:
         return -margin
     needed(b, s.needed)
@@ -79,7 +79,7 @@ def rest_margins(
                 return out
         if not settle(part, face, memory, state, time):
             continue
-        margin = contact_margin(part, face, memory)
+        margin = contact_margin(part, face, memory, True)
         if part.law.kind == LOCAL and margin >= 0.0:
             margin = pull_to_end(part.law, face, b.load, b) / (part.mass * max(1.0, abs(part.gravity)))
         needed(b, s.needed)

@@ -97,6 +97,7 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
     step.friction, step.speed = powers(part, b)[1] / (part.mass * speed * speed), speed
     slowing = 0.0
     for i in range(3):
+        step.gap[i] = b.gap[i]
         unit = face.arm if i == 2 else 1.0
         rate = b.planar[i, 0] * b.rates[0] + b.planar[i, 1] * b.rates[1] + b.planar[i, 2] * b.rates[2]
         slowing -= unit * unit * rate * b.slip[i] / speed
@@ -201,6 +202,8 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
     stiff, anew, before = h * step.friction > STIFF, True, math.inf
     small = FOUND * min(request.tolerance / request.stroke_time, RELATIVE * step.speed)
     for turn in range(PASSES):
+        for i in range(3):
+            b.gap[i] = step.gap[i]
         for k in range(STAGES):
             for i in range(3):
                 total = 0.0
@@ -220,7 +223,7 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
                 step.rates[k, i] = b.rates[i]
             stages[k, WORK], stages[k, LOSS] = powers(part, b)
             rim = rim_margin(surface, face, stages[k]) / surface.size
-            step.margins[k] = min(contact_margin(part, face, memory), rim)
+            step.margins[k] = min(contact_margin(part, face, memory, False), rim)
             if stiff and anew and not _fill_turns(request, face, memory, k):
                 return False
         for k in range(STAGES):

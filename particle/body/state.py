@@ -64,13 +64,15 @@ def slip_speed(face: Face, memory: Memory) -> float:
 
 
 @device_no_arrays
-def contact_margin(part: Part, face: Face, memory: Memory) -> float:
+def contact_margin(part: Part, face: Face, memory: Memory, rests: bool) -> float:
     """How far the contact is from its end under b.load, dimensionless: pull-off, the largest load, a lifted edge."""
     load, weight = memory.balance[0].load[0], part.mass * max(1.0, abs(part.gravity))
     least = math.inf
     if part.law.kind == LOCAL:
         b = memory.balance[0]
-        return min(b.stability if press(part.law, face, b.load, b) else -1.0, (part.law.largest_load - load) / weight)
+        return min(
+            b.stability if press(part.law, face, b.load, b, rests) else -1.0, (part.law.largest_load - load) / weight
+        )
     if math.isfinite(part.law.pull_off):
         least = (load + part.law.pull_off) / weight
         if face.tips:
@@ -106,7 +108,7 @@ def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: 
         return Verdict.DETACHED
     if part.law.kind == LOCAL and load <= part.law.largest_load:
         b = memory.balance[0]
-        press(part.law, face, b.load, b)
+        press(part.law, face, b.load, b, False)
         return Verdict.DETACHED if comes_off(b) else Verdict.TIPPED
     return Verdict.OVERLOADED if load > part.law.largest_load else Verdict.TIPPED
 
