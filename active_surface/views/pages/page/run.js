@@ -14,9 +14,10 @@ function readOut(step) {
   slider.setAttribute("aria-valuetext", `${clock} ${units.time}, ${state}`);
   const places = largest(part.x, part.y);
   const latest = pageData.events.filter((event) => event.time <= time[step]).pop();
+  const listed = latest !== pageData.events.at(-1) || latest === here || !pageData.moreEvents; // no later one is left out
   describe(element("readout"), [
     ["state", state],
-    ...(pageData.events.length ? [["last event", latest ? [latest.text, latest.by].filter(Boolean).join("; ") : "none yet"]] : []),
+    ...(pageData.events.length && listed ? [["last event", latest ? [latest.text, latest.by].filter(Boolean).join("; ") : "none yet"]] : []),
     [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
     ...(part.face ? [["heading", `${beside(degrees(part.heading[step]), degrees(largest(part.heading)))} degrees`]] : []),
     ["height", `${beside(part.height[step], largest(part.height))} ${units.height}`],
