@@ -8,16 +8,15 @@ from concurrent import futures
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, SimpleQueue
-from typing import TypeGuard
 
 import numpy as np
 
 from particle.body import Body
 from particle.drives import AnyDrive
-from particle.friction import Contact, FrictionLaw
+from particle.friction import Contact
 from particle.interrupt import wait
 from particle.path import find_path
-from particle.simulation import Micropart, face_of, faults, law_faults, new_request, part_faults
+from particle.simulation import Micropart, face_of, faults, is_law, law_faults, new_request, part_faults
 from particle.surface import SurfaceMotion
 from particle.trajectory import Trajectory
 
@@ -138,7 +137,7 @@ def _next(ended: SimpleQueue[Future[None]]) -> Future[None]:
 
 def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Contact], list[str]]:
     """One law for each of so many parts, and what is wrong with what was given."""
-    if _is_law(friction):
+    if is_law(friction):
         return [friction] * count, []
     laws = list(friction) if isinstance(friction, Iterable) else None
     wrong = []
@@ -146,13 +145,9 @@ def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Conta
         got = repr(friction) if laws is None else len(laws)
         wrong.append(f"Input friction of simulate_many must be one law or one a part, {count}; got {got}")
     for k, law in enumerate(laws or []):
-        if not _is_law(law):
+        if not is_law(law):
             wrong.append(f"Input friction of part {k} must be a friction law; got {law!r}")
     return laws or [], wrong
-
-
-def _is_law(friction: object) -> TypeGuard[Contact]:
-    return isinstance(getattr(friction, "law", None), FrictionLaw)
 
 
 def processors() -> int:

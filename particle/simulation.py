@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.footprint import Footprint
-from particle.friction import LOCAL, Contact, ScaledFriction
+from particle.friction import LOCAL, Contact, FrictionLaw, ScaledFriction
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
@@ -122,6 +122,8 @@ def simulate(
     wrong += faults(surface, duration, gravity, tolerance, after_detachment, after_tipping)
     wrong += part_faults(surface, part, type(part).__name__)
     wrong += law_faults(part, friction, after_tipping)
+    if not is_law(friction):
+        wrong.append(f"Input friction of simulate must be a friction law, such as CoulombAdhesion; got {friction!r}")
     if scheme == "paper" and not wrong and friction.law.kind == LOCAL:
         wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
@@ -159,11 +161,14 @@ def part_faults(surface: SurfaceMotion, part: Micropart | Body, of: str) -> list
     return wrong
 
 
+def is_law(friction: object) -> TypeGuard[Contact]:
+    """Whether it is a friction law."""
+    return isinstance(getattr(friction, "law", None), FrictionLaw)
+
+
 def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "stop") -> list[str]:
     """What is wrong with a friction law for a part."""
-    if not hasattr(friction, "law"):
-        return [f"Input friction must be a friction law, such as CoulombAdhesion; got {friction!r}"]
-    if friction.law.kind != LOCAL:
+    if not is_law(friction) or friction.law.kind != LOCAL:
         return []
     while isinstance(friction, ScaledFriction):
         friction = friction.contact

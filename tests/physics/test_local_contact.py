@@ -98,7 +98,7 @@ def test_what_does_not_go_together_is_refused(local):
         simulate(surface, uniform, law, 1e-3)
     with pytest.raises(ValueError, match="after_tipping of simulate must be 'stop'"):
         simulate(surface, body, law, 1e-3, after_tipping="ignore")
-    with pytest.raises(ValueError, match="friction must be a friction law"):
+    with pytest.raises(ValueError, match="friction of simulate must be a friction law"):
         simulate(surface, body, 0.3, 1e-3)
     around = [[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]]
     with pytest.raises(ValueError, match="all of which its centroid sees"):
