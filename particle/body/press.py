@@ -29,10 +29,7 @@ from particle.types import FloatArray
 
 TURNS, HALVINGS, SETTLED = 100, 40, 1e-9  # steps of Newton, halvings of one, roughnesses: the next would be the square
 LONGEST, FASTER = 0.5, 0.1  # roughnesses, the longest step, and of the tilt, what it may be longer by
-STABLE, FLATTER = (
-    1e-9,
-    1e-3,
-)  # of the largest stiffness: from where on the least counts as positive, and what it is made
+STABLE, FLATTER = 1e-9, 1e-3  # of the largest stiffness: from where on the least is positive, what it is made if not
 OPEN = 12.0  # roughnesses, from where on no asperity touches
 CLOSED = 1.0  # roughnesses, the least gap from which the search begins
 PULLS = 20  # halvings for the pull that ends contact
