@@ -14,6 +14,7 @@ from particle.checks import finite, positive, refuse
 from particle.types import FloatArray
 
 FLAT = 1e-9  # of the squared size: a polygon with less area has none
+HARMONICS, SIDE_POINTS, FACE_POINTS = 24, 40, 48  # of the torsion function: degree, on each side, and as `rule`
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +123,26 @@ class Footprint:
         places = s * (b[:, None, None] + t * (c - b)[:, None, None])
         twice = (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])[:, None, None]
         return places.reshape(-1, 2), (np.outer(part * share, part) * twice / self.area).ravel()
+
+    @cached_property
+    def torsion(self) -> tuple[float, float]:
+        """int phi dA [m^4] and int phi r^2 dA/(4 int phi dA) [m^2], -laplace(phi) = 1, phi = 0 at the rim.
+
+        Harmonic polynomials that fit r^2/4 on the sides by least squares: to 1e-5 on convex faces, to some 3 % where a
+        corner turns inwards.
+        """
+        if self.radius:
+            return math.pi * self.radius**4 / 8, self.radius**2 / 12
+        nodes = (np.polynomial.legendre.leggauss(SIDE_POINTS)[0][:, None] + 1) / 2
+        a, b = self.corners[:, None] / self.reach, np.roll(self.corners, -1, axis=0)[:, None] / self.reach
+        sides, (places, weights) = (a + nodes * (b - a)).reshape(-1, 2), self.rule(FACE_POINTS)
+        x, y = np.concatenate([sides, places / self.reach]).T
+        powers = (x + 1j * y)[:, None] ** np.arange(HARMONICS + 1)
+        harmonics, parabola = np.concatenate([powers.real, powers.imag[:, 1:]], axis=1), (x * x + y * y) / 4
+        fit = np.linalg.lstsq(harmonics[: len(sides)], parabola[: len(sides)], rcond=None)[0]
+        function = weights * (harmonics @ fit - parabola)[len(sides) :]
+        total, widened = float(function.sum()), float(function @ parabola[len(sides) :])
+        return total * self.area * self.reach**2, widened / total * self.reach**2
 
     @property
     def _is_parallelogram(self) -> bool:

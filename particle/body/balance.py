@@ -307,7 +307,7 @@ def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Ba
             borne = press(part.law, face, b.load, b, False)
         fill_friction(part, face, s_1, s_2, s_3, b)
         n, m_1, m_2 = b.load[0], b.load[1], b.load[2]
-        _fill_system(part, b)
+        _fill_system(part, face, b)
         if not solve(b.matrix, b.rates):
             return False
         set_load(part, b.rates[0], b.rates[1], b.rates[2], b)
@@ -340,11 +340,16 @@ def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b:
 
 
 @device_no_arrays
-def _fill_system(part: Part, b: Balance) -> None:
-    """[p_u - (W' + P) n_u] u = W - W' L + (W' + P) n_0 - p_0, W linear around the load L = b.load, into b.matrix."""
-    f, w, load = b.forces, b.friction, b.load
+def _fill_system(part: Part, face: Face, b: Balance) -> None:
+    """[p_u - (W' + P) n_u] u = W - W' L - D xi + (W' + P) n_0 - p_0 into b.matrix, W linear around the load L = b.load.
+
+    D = c (1, 1, tr S) is the drag of air at the face's slip xi.
+    """
+    f, w, load, s = b.forces, b.friction, b.load, face.unmoments
+    spread = (s[0, 0] + s[1, 1]) / (s[0, 0] * s[1, 1] - s[0, 1] * s[1, 0])
     for i in range(3):
-        right = w[i, 0] - w[i, 1] * (load[0] - part.squeeze) - w[i, 2] * load[1] - w[i, 3] * load[2]
+        right = -part.drag * b.slip[i] * (spread if i == 2 else 1.0)
+        right += w[i, 0] - w[i, 1] * (load[0] - part.squeeze) - w[i, 2] * load[1] - w[i, 3] * load[2]
         by_load, by_m_1, by_m_2 = w[i, 1] + b.workless[i, 0], w[i, 2] + b.workless[i, 1], w[i, 3] + b.workless[i, 2]
         for j in range(4):
             normal = by_load * f[3, j] + by_m_1 * f[4, j] + by_m_2 * f[5, j]

@@ -71,7 +71,8 @@ def contact_states(
             d_x, d_y = -part.mass * p_x, -part.mass * p_y
         elif p.speed > 0.0:
             k_x, k_y = slip(f, part, v_x, v_y)
-            d_x, d_y = -row.friction / p.speed * k_x, -row.friction / p.speed * k_y
+            against = row.friction / p.speed + part.drag
+            d_x, d_y = -against * k_x, -against * k_y
         else:  # it begins to slide, along the pull
             against = row.friction / state.pull if state.pull > 0.0 else 0.0
             d_x, d_y = -against * p_x, -against * p_y

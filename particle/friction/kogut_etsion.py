@@ -37,6 +37,7 @@ SHEAR = {
     "printed": ((-0.01, 0.09, -0.4, 0.85), 1.0),
     "unrounded": ((-0.007, 0.085, -0.389, 0.822), 1.03),
 }
+MEAN_PLANE = 0.045944  # of the roughness over beta: how far the mean of the asperities is above that of the surface
 SHEAR_POWERS = (4.425, 3.425, 2.425, 1.425)
 
 
@@ -70,6 +71,10 @@ class KogutEtsion(KogutEtsionInput):
     def critical_interference(self) -> float:
         """w_c / sigma, at which an asperity begins to yield."""
         return self.asperity_width / self.plasticity_index**2
+
+    def mean_gap(self, separation: ArrayLike) -> FloatArray:
+        """The gap [m] between the surfaces' mean planes; separations d / sigma count from the asperities' mean."""
+        return (np.asarray(separation, dtype=float) + MEAN_PLANE / self.asperity_beta) * self.roughness
 
     def forces(self, separation: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Load P, adhesion F_s and friction limit Q [N] at separations d / sigma of any shape: equations (3)-(5)."""

@@ -262,6 +262,7 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
     v_x, v_y = over_plane(f, part, u * d_x, u * d_y)
     p = pull(f, v_x, v_y, part)
     limit, load = grip_at(f, part, p.normal)
+    limit += part.drag * u
     climb = d_x * f.w_x + d_y * f.w_y
     rate.x, rate.y = v_x, v_y
     if part.centre > 0.0 or local.frame[0].in_plane > 0:

@@ -8,9 +8,9 @@ of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `mechanics
     N = m (B / s - z_c |n'|^2) + squeeze                    normal force, from the constraint
     p = -a - B grad(w)/s^2 - z_c n''                        pull without friction, along the surface
     k = (I - z_k S) v,   u = |k|_M                          velocity and speed of the contact over the surface
-    (I - z_c S) (x'', y'') = p - (Q(N)/m) K k/u             while it slides,   K = (I - z_c S)^-1 (I - z_k S)
+    (I - z_c S) (x'', y'') = p - (Q(N) + c u)/m K k/u       while it slides,   K = (I - z_c S)^-1 (I - z_k S)
 
-and it sticks while m |K^-1 p|_M at v = 0 is at most Q(N). K is d'Alembert's: in a displacement dX the pressure does no
+with the drag c of air, and it sticks while m |K^-1 p|_M at v = 0 is at most Q(N). K is d'Alembert's: in a displacement dX the pressure does no
 work, friction Q.(I - z_k S) dX; so the pressure that bears its moment leans with the surface. With z_k = z_c = 0
 the part is a point on the mid-plane.
 
@@ -20,7 +20,7 @@ also holds -2 grad u_t v - v.grad grad u.v, and F takes the place of I in front 
 docs/motion.md. So they do at u = 0, where F = I.
 
 The surface does the work of the contact's whole force at its own velocity where the centre of mass is, about which
-that force has no moment; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen
+that force has no moment; friction and drag dissipate (Q + c u) u; the rest is kinetic and potential energy of the part, both as seen
 by one at rest.
 """
 
@@ -55,6 +55,7 @@ class Part(NamedTuple):
     law: FrictionLaw
     contact: float = 0.0  # m, heights over the mid-plane: of the contact, and of the centre of mass
     centre: float = 0.0
+    drag: float = 0.0  # N s/m, of the air under it, against its slip
 
 
 class Pull(NamedTuple):
@@ -161,6 +162,7 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     v_x, v_y = motion.v_x, motion.v_y
     p = pull(f, v_x, v_y, part)
     limit, load = grip_at(f, part, p.normal)
+    limit += part.drag * p.speed
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
     k_x, k_y = slip(f, part, v_x, v_y)
     q_x, q_y = at_centre(f, part, slow * k_x, slow * k_y)

@@ -8,7 +8,8 @@ across it), |A| < Q stops the part after
     Y = r (2 Q u + A p)/(4 Q^2 - A^2) across it.
 
 Here p, r, X and Y are the contact's, and A and Q are multiplied by d.K^2 d of `mechanics.breakaway`, which is 1
-where the contact is as high as the centre of mass. What K^2 has across d is left to the error.
+where the contact is as high as the centre of mass. What K^2 has across d is left to the error. The drag c u of air
+counts by its mean: Q stands for Q + c u/(2 m).
 
 A pull A > Q instead turns a part that moves nearly straight against it, after T = u/(A + Q), X = p u/(2 (A + Q)) and
 Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
@@ -74,7 +75,7 @@ def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float
         m_x, m_y = moved(k, a.d_x, a.d_y)
         straight, bent = inner(f, a.d_x, a.d_y, m_x, m_y), abs(inner(f, a.n_x, a.n_y, m_x, m_y))
         wide = abs(k.xx + k.yy - 2 * straight)
-    q, force = straight * a.limit, straight * a.demand
+    q, force = straight * (a.limit + 0.5 * part.drag / part.mass * u), straight * a.demand
     if force < q:
         loss = q * q - force * force
         along = (force * p * p + 2 * q * p * u + force * u * u) / (4 * loss)
