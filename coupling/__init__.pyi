@@ -16,6 +16,7 @@ from .surface.motion import surface_motion as surface_motion
 
 # Not public: for the packages that build on this one.
 from .batch import FAILURES as FAILURES, PathTask as PathTask, follow as follow, follow_each as follow_each
+from .air import AirFigures as AirFigures, air_figures as air_figures
 from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import (

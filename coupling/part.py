@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
+from coupling.case import AirCase, Case, ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
 from particle import (
+    Air,
     Body,
     ConstantFriction,
     ContactSamples,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+RESTS = 0.999  # of the range of loads of a rough contact, to which the part's weight is cut
 SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
 FLAT, MAX_SAG = 0.3, 100.0  # roughnesses: where the bent contact is found
 STEEP = 40.0  # roughnesses, up to which a local contact is exact to 1e-4
@@ -70,6 +72,57 @@ def friction_law(law: FrictionCase, size: float | Footprint | None = None) -> Co
     return rough if size is None else LocalContact(rough, size)
 
 
+def footprint_of(case: Case) -> Footprint | None:
+    """The part's face, or the square that stands for a point with a size; None: it has none."""
+    if case.part.face is not None or case.footprint is None:
+        return case.part.face
+    return Footprint.rectangle(case.footprint, case.footprint)
+
+
+def rough_under(case: Case, footprint: Footprint) -> KogutEtsion:
+    """The rough contact whose separation is the gap under the part: that of the case, or an assumed one.
+
+    Friction laws that state no separation are taken to be of the surfaces of the paper's Table 1.
+    """
+    law = friction_of(case)
+    if not isinstance(law, KogutEtsionCase):
+        return KogutEtsion(contact_area=footprint.area)
+    rough = friction_law(law)
+    assert isinstance(rough, KogutEtsion)
+    return rough
+
+
+@lru_cache(maxsize=256)
+def resting_separation(rough: KogutEtsion, load: float) -> float:
+    """The separation [roughnesses] of a rough contact under a load [N], or where its law ends."""
+    return float(rough.separation(min(max(load, -RESTS * rough.pull_off), RESTS * rough.largest_load)))
+
+
+def weight_of(case: Case) -> float:
+    """What presses a part at rest on a level surface [N]."""
+    gravity = case.run.gravity
+    return case.part.mass * (-gravity[2] if isinstance(gravity, tuple) else gravity) + case.part.squeeze
+
+
+def air_of(case: Case) -> Air:
+    """The air around the part; where a case says nothing of it, that of a room."""
+    return Air(**(case.air or AirCase()).model_dump())
+
+
+def gap_under(case: Case, footprint: Footprint) -> float:
+    """The gap [m] under a part at rest."""
+    rough = rough_under(case, footprint)
+    return float(rough.mean_gap(resting_separation(rough, weight_of(case)))) + air_of(case).bow
+
+
+def drag_of(case: Case) -> float:
+    """The drag [N s/m] of the air under the part; 0 where a case says nothing of it."""
+    footprint = footprint_of(case)
+    if case.air is None or case.air.pressure == 0 or footprint is None:
+        return 0.0
+    return air_of(case).drag(footprint.area, gap_under(case, footprint))
+
+
 def build_part(case: Case, position: tuple[float, float] | None = None) -> Micropart | Body:
     """The part of a case, at its start or another place [m]."""
     p, place = case.part, position or case.part.position
@@ -86,6 +139,7 @@ def build_part(case: Case, position: tuple[float, float] | None = None) -> Micro
             squeeze=p.squeeze,
             centre_height=p.centre_height,
             pressure=p.pressure,
+            drag=drag_of(case),
         )
     return build_point(case, place)
 
@@ -95,7 +149,7 @@ def build_point(case: Case, position: tuple[float, float] | None = None) -> Micr
     p, place = case.part, position or case.part.position
     if p.face is not None:
         raise ValueError("part.footprint must not be given here, where parts are points")
-    return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height)
+    return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height, drag_of(case))
 
 
 def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float | None:

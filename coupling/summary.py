@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
+from coupling.air import AirFigures, air_figures
 from coupling.borders import Thresholds, thresholds_of
 from coupling.case import Case
 from coupling.display import frame_times
@@ -65,6 +66,7 @@ class Summary:
     path_resolution: float  # m, the tolerance of one step
     margins: Margins
     thresholds: Thresholds | None  # of a part that hardly moved or was lost, where a factor scales its drives
+    air: AirFigures | None  # under the part; None: it has no size
     frames_per_cycle: float | None  # steps in files to a cycle of the fastest drive; None: measured, or nothing moves
 
     def as_dict(self) -> dict[str, Any]:
@@ -136,6 +138,7 @@ def summarise(case: Case, scene: Scene, loads: PathLoads, tighter: Trajectory, f
         path_resolution=case.run.tolerance * scene.surface.size,
         margins=margins_of(scene, loads),
         thresholds=thresholds_of(case, scene, trajectory, friction),
+        air=air_figures(case, scene, trajectory, friction),
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, scene, float(trajectory.time[-1])),
     )
     if isinstance(scene, PlateScene):

@@ -1,3 +1,4 @@
+from .air import Air as Air
 from .batch import Interrupted as Interrupted, processors as processors, simulate_many as simulate_many
 from .drives.drive import Drive as Drive, Segment as Segment, SegmentDrive as SegmentDrive
 from .drives.points import HermiteDrive as HermiteDrive, TableDrive as TableDrive

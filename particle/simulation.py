@@ -42,6 +42,7 @@ class Micropart:
     velocity: tuple[float, float] = (0.0, 0.0)  # m/s
     squeeze: float = 0.0  # N, a constant force that presses it onto the surface, along the normal
     centre_height: float = 0.0  # m, of its centre of mass over the surface that it lies on
+    drag: float = 0.0  # N s/m, of the air under it: a force against its slip (`Air.drag`)
 
     def __post_init__(self) -> None:
         pairs = {name: getattr(self, name) for name in ("position", "velocity")}
@@ -51,6 +52,7 @@ class Micropart:
                 (positive(self.mass), "mass", "positive, in kg", self.mass),
                 (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
                 (not_negative(self.centre_height), "centre_height", "0 or a positive length in m", self.centre_height),
+                (not_negative(self.drag), "drag", "0 or a positive drag in N s/m", self.drag),
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
             ],
         )
@@ -128,6 +130,8 @@ def simulate(
         wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
+    elif scheme != "events" and isinstance(part, Micropart) and part.drag:
+        wrong.append(f"Input drag of Micropart must be 0 with the scheme {scheme!r}; got {part.drag!r}")
     if wrong:
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
@@ -282,7 +286,7 @@ def part_record(
     if surface.tilts or isinstance(part, Body):  # on a surface that stays level all heights move alike
         contact, centre = surface.half_thickness, surface.half_thickness + (part.centre_height or 0.0)
     forces = float(part.mass), -float(z), float(x), float(y), float(part.squeeze)
-    return Part(*forces, friction.law, float(contact), float(centre))
+    return Part(*forces, friction.law, float(contact), float(centre), float(part.drag))
 
 
 def _is_pair(value: Any) -> bool:

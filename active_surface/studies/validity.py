@@ -14,7 +14,9 @@ from active_surface.studies.points import Points
 from active_surface.studies.study import Study
 from coupling import (
     FAILURES,
+    AirFigures,
     PlateSummary,
+    air_figures,
     build_friction,
     follow_part,
     one_blas_thread,
@@ -73,6 +75,7 @@ def model_warnings(engine: Engine) -> tuple[str, ...]:
     known = {name: [one[name] for one in figures if one[name] is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one["stretch_error"] for one in figures if one["stretch_error"]]
+    worst["air"] = max((one["air"] for one in figures if one["air"]), key=_pumped, default=None)
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
     return (*report.warnings(replace(first, frames_per_cycle=None, **worst)), *unchecked)
 
@@ -83,7 +86,12 @@ def _figures(engine: Engine, case: Case) -> dict[str, Any] | None:
     if not isinstance(scene, PlateScene):
         return None
     path = interruptible(follow_part, case, scene.surface, friction)
-    return vars(plate_figures(case, scene, path, friction)) | {"energy_balance": path.energy.balance}
+    own = {"energy_balance": path.energy.balance, "air": air_figures(case, scene, path, friction)}
+    return vars(plate_figures(case, scene, path, friction)) | own
+
+
+def _pumped(air: AirFigures) -> float:
+    return max(air.load_share or 0.0, air.breathing or 0.0)
 
 
 def _cases(study: Study) -> Iterator[Case]:

@@ -50,7 +50,7 @@ from coupling.case.scaled import (
     with_index,
 )
 from coupling.case.table import Contradictions, Faults, InputError, Location, Mistake, Table, mistakes_of
-from coupling.case.tables import CaseTables, RunCase
+from coupling.case.tables import AirCase, CaseTables, RunCase
 from coupling.case.toml_file import CaseError, Problem, parse, unfit_name
 from coupling.case.values import (
     AXES,

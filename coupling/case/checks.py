@@ -70,6 +70,7 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
         except Faults as error:
             mistakes += error.mistakes
     mistakes += _face(tables, parts)
+    mistakes += _air(tables, parts)
     if wrong := _too_many(plate, made, tables.run.duration):
         mistakes.append((("run", "duration"), wrong))
     if mistakes:
@@ -111,6 +112,17 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
             ("friction", "contact_area"),
             f"must not be given with a footprint in {where}, which has an area",
         )
+
+
+def _air(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
+    """Yield what does not go with the air around the part."""
+    if tables.air is None or tables.air.pressure == 0:
+        return
+    if tables.run.scheme != "events":
+        yield ("run", "scheme"), f'must be "events" with [air], unless that is a vacuum; got "{tables.run.scheme}"'
+    if not isinstance(tables.friction, KogutEtsionCase):
+        for place in (place for place, part in parts.items() if part.face is None and part.size is None):
+            yield (*place, "size"), "is missing; with [air], unless that is a vacuum, it must be a length"
 
 
 def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:

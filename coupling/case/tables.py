@@ -12,7 +12,7 @@ from coupling.case.friction import AnyFriction
 from coupling.case.part import UNUSED, NamedPart, PartCase
 from coupling.case.plates import AnyPlate
 from coupling.case.table import Contradictions, Table
-from coupling.case.values import Gravity, PositiveTime
+from coupling.case.values import Gravity, Length, LoadPressure, PositiveTime, Temperature
 
 MAX_STEPS: Final = 100_000_000  # of a fixed scheme
 
@@ -54,6 +54,17 @@ class RunCase(Table):
             yield "after_detachment", message
 
 
+class AirCase(Table):
+    """The air around the part, in Pa, K and m."""
+
+    pressure: LoadPressure = Field(default=101325.0, ge=0)
+    """Its pressure; 0 in a vacuum."""
+    temperature: Temperature = 293.15
+    """Its temperature."""
+    bow: Length = Field(default=0.0, ge=0, examples=["0.5 um"])
+    """What a face that is not flat, or stands on feet, adds to the gap under it."""
+
+
 def _alternatives(schema: dict[str, Any]) -> None:
     """Has a JSON schema ask for one part or many, and for actuators, a lattice or neither, as that plate needs it."""
     schema["required"] = [key for key in schema["required"] if key not in ("actuators", "part")]
@@ -85,6 +96,8 @@ class CaseTables(Table):
     """Many parts in place of one, with the fields of [part]."""
     friction: AnyFriction
     """The friction between part and surface."""
+    air: AirCase | None = None
+    """The air around the part, which drags at it as it slips; without it there is none."""
     run: RunCase
     """How long the part is followed, and how exactly."""
 

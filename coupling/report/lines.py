@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from common import Unit, count, percent, quantity, quantity_text
+from coupling.air import AirFigures
 from coupling.borders import BEFORE, LEAST, RANGE, Thresholds
 from coupling.case import INERTIA
 from coupling.margins import Margin
@@ -235,8 +236,24 @@ def details(s: Summary) -> list[tuple[str, str]]:
         rows.append(("", f"drives follow their motion to {s.drive_error:.1e} of the stroke"))
     if s.pressure is not None:
         rows.append(("pressure", PRESSURES[s.pressure]))
+    if s.air is not None:
+        rows += [("air", text) for text in _air(s.air)]
     rows.append(("integrator", count(s.evaluations, "evaluation")))
     return rows + (_model(s) if isinstance(s, PlateSummary) else [])
+
+
+def _air(air: AirFigures) -> Iterator[str]:
+    """What the air under the part does."""
+    if air.pressure == 0:
+        yield "none: in a vacuum"
+        return
+    gap, at = quantity(air.gap, "m"), f"At {quantity(air.pressure, 'Pa', 4)} "
+    by = ", assumed, as the friction law states none" if air.assumed else ""
+    share = "" if air.load_share is None else f"; load share {air.load_share:.2g}, breathing {air.breathing:.2g}"
+    yield f"{at}over a gap of {gap}{by}{share}"
+    settles = "" if air.settle_time is None else f", settles in {quantity(air.settle_time, 's')}"
+    drags = "" if air.drags else ", left out"
+    yield f"escapes from {quantity(air.escape_speed, 'm/s')}{settles}; drag rate {air.drag_rate:.3g} per second{drags}"
 
 
 def _model(s: PlateSummary) -> list[tuple[str, str]]:

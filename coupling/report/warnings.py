@@ -10,6 +10,7 @@ from coupling.outlook import MAX_FREQUENCY
 from coupling.part import FLAT, STEEP
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.summary import PlateSummary, Summary
+from particle import Outcome
 
 # The model holds to about a per cent up to these.
 MAX_DEFLECTION = 0.2  # of the thickness
@@ -23,12 +24,15 @@ MAX_STRETCH_ERROR = 1e-3  # of the deflection of a plate that stretches
 MIN_STEPS_PER_CYCLE = 8
 MAX_TABLE_ERROR = 0.1  # of the friction limit
 MAX_NOISE_PULL = 0.3  # of the friction limit: a normal distribution passes 1 in one of a thousand moments
+MAX_AIR = 0.05  # load share and breathing of the air under the part
+ESTIMATE = 0.4  # of the load share: the error of the way is about as large below it
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
 def warnings(summary: Summary) -> list[str]:
     """The limits of the model and of the numerics that the run passes."""
-    texts = [*_of_numerics(summary), *_of_measurement(summary), *_of_contact(summary), *_of_scheme(summary)]
+    texts = [*_of_numerics(summary), *_of_measurement(summary), *_of_contact(summary), *_of_air(summary)]
+    texts += _of_scheme(summary)
     return [*_of_solver(summary), *texts, *_of_model(summary)] if isinstance(summary, PlateSummary) else texts
 
 
@@ -115,6 +119,31 @@ def _of_contact(s: Summary) -> Iterator[str]:
         yield (
             f"The normal force falls to {quantity(s.margins.smallest_load, 'N')}: the plate pulls at the part. A "
             'constant limit holds it whatever the pull; model = "coulomb" with its adhesion lets it come off.'
+        )
+
+
+def _of_air(s: Summary) -> Iterator[str]:
+    air = s.air
+    if air is None:
+        return
+    at = f"At {quantity(air.pressure, 'Pa', 4)} "
+    if air.load_share is not None and air.load_share > MAX_AIR:
+        off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"
+        yield (
+            f"{at}a film of air under the part carries {air.load_share:.2g} times as much of the load's swing as the "
+            f"contact, and friction lags: expect the way to be off by {off}. Below 1 kPa, or on feet of 2 um, it carries next "
+            "to none."
+        )
+    if air.breathing is not None and air.breathing > MAX_AIR:
+        yield (
+            f"{at}the plate, as it bends, pumps air under the part with up to {air.breathing:.2g} times the force that "
+            "holds it, which can turn its way around."
+        )
+    if s.outcome == Outcome.DETACHED and air.velocity_change < air.escape_speed:
+        yield (
+            f"{at}the part would not come off: air holds it on a plate slower than "
+            f"{quantity(air.escape_speed, 'm/s')}, and this one changes its velocity by "
+            f"{quantity(air.velocity_change, 'm/s')}. That it comes off holds in a vacuum."
         )
 
 

@@ -42,6 +42,7 @@ class Body:
     centre_height: float | None = None  # m, of its centre of mass over its face; by default half the thickness
     inertia: ArrayLike | None = None  # kg m^2, (3,) or (3, 3) about the centre of mass; by default that of the block
     pressure: str = "linear"  # under the face: "linear" bears its moments, "uniform" is the same everywhere
+    drag: float = 0.0  # N s/m, of the air under it: a force against its slip (`Air.drag`)
 
     def __post_init__(self) -> None:
         numbers = {"heading": (self.heading, "rad"), "spin": (self.spin, "rad/s")}
@@ -56,6 +57,7 @@ class Body:
                     for name, (value, unit) in numbers.items()
                 ),
                 (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
+                (not_negative(self.drag), "drag", "0 or a positive drag in N s/m", self.drag),
                 (self.pressure in PRESSURES, "pressure", "'linear' or 'uniform'", self.pressure),
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
             ],

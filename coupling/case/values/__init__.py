@@ -37,6 +37,7 @@ from coupling.case.values.quantities import (
     Pressure,
     Stiffness,
     SurfaceEnergy,
+    Temperature,
     Tension,
     Time,
     Velocity,

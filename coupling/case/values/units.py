@@ -38,7 +38,7 @@ DIMENSIONS: Final = {
 RANGES: Final = {
     "m": (1e-15, 1e3), "m^2": (1e-24, 1e6), "rad": (1e-9, 1e6), "s": (1e-12, 1e6), "Hz": (1e-6, 1e12),
     "m/s": (1e-15, 1e6), "m/s^2": (1e-12, 1e9), "kg": (1e-24, 1e3), "kg/m^3": (1e-3, 1e7), "N": (1e-21, 1e6),
-    "Pa": (1e-3, 1e15), "J/m^2": (1e-9, 1e3), "N/m": (1e-12, 1e12), "N/m^3": (1e-6, 1e21),
+    "Pa": (1e-3, 1e15), "K": (50.0, 2000.0), "J/m^2": (1e-9, 1e3), "N/m": (1e-12, 1e12), "N/m^3": (1e-6, 1e21),
 }  # fmt: skip
 """The smallest size of a positive quantity in an SI unit, and the largest of any."""
 

@@ -10,9 +10,9 @@ of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `mechanics
     k = (I - z_k S) v,   u = |k|_M                          velocity and speed of the contact over the surface
     (I - z_c S) (x'', y'') = p - (Q(N) + c u)/m K k/u       while it slides,   K = (I - z_c S)^-1 (I - z_k S)
 
-with the drag c of air, and it sticks while m |K^-1 p|_M at v = 0 is at most Q(N). K is d'Alembert's: in a displacement dX the pressure does no
-work, friction Q.(I - z_k S) dX; so the pressure that bears its moment leans with the surface. With z_k = z_c = 0
-the part is a point on the mid-plane.
+with the drag c of air, and it sticks while m |K^-1 p|_M at v = 0 is at most Q(N). K is d'Alembert's: in a displacement
+dX the pressure does no work, friction Q.(I - z_k S) dX; so the pressure that bears its moment leans with the surface.
+With z_k = z_c = 0 the part is a point on the mid-plane.
 
 Where the mid-plane moves in its plane by u, (x, y) is a point of the material, F = I + grad u, and grad w the slope as
 seen in space, F^-T grad w; the second derivatives of w are those of P times (-grad w, 1). Then a holds u_tt, the pull p
@@ -20,8 +20,8 @@ also holds -2 grad u_t v - v.grad grad u.v, and F takes the place of I in front 
 docs/motion.md. So they do at u = 0, where F = I.
 
 The surface does the work of the contact's whole force at its own velocity where the centre of mass is, about which
-that force has no moment; friction and drag dissipate (Q + c u) u; the rest is kinetic and potential energy of the part, both as seen
-by one at rest.
+that force has no moment; friction and drag dissipate (Q + c u) u; the rest is kinetic and potential energy of the
+part, both as seen by one at rest.
 """
 
 from __future__ import annotations
