@@ -4,9 +4,9 @@ With the pressure p and the gap h = h0 - kappa/2 (x^2 + y^2 - L^2/6), whose mean
 
     d(p h)/dt = div(h^3 p Qbar/(12 mu) grad p),   p = p_a at the rim,   Qbar = 1 + 9.638 Kn^1.159,   Kn = mfp p_a/(p h)
 
-(T. Veijola et al., Sensors and Actuators A 48, 1995, 239-248). Asperities and film bear the load: N_c + int (p - p_a) dA.
-The state is u = p h / p_a. With it the load falls throughout as h0 grows, before pull-off and beyond, as air that cannot
-leave is stiff; so h0 follows from the load. All is even in x and y, and Chebyshev's points fill a quadrant.
+(T. Veijola et al., Sensors and Actuators A 48, 1995, 239-248). The load is N_c + int (p - p_a) dA, N_c of asperities.
+The state is u = p h / p_a. For a given u the load falls throughout as h0 grows, before pull-off and beyond, as air that
+cannot leave is stiff; so h0 follows from the load. All is even in x and y, and Chebyshev's points fill a quadrant.
 """
 
 from __future__ import annotations
@@ -171,8 +171,8 @@ def tilt_by_collocation(points: int) -> float:
 def bgk_flow(knudsen: float, cells: int = 200) -> float:
     """Qbar of the linearised BGK equation between diffuse walls (C. Cercignani, A. Daneri, J. Appl. Phys. 34, 1963).
 
-    Z(x) = 1 + 1/sqrt(pi) int T_-1(|x - y|) Z(y) dy over a width of sqrt(pi)/(2 Kn), T_n(x) = int_0^inf t^n exp(-t^2 - x/t)
-    dt, by Galerkin's method with constants in cells: T_1'' = T_-1, so each element is exact.
+    Z(x) = 1 + 1/sqrt(pi) int T_-1(|x - y|) Z(y) dy over a width of sqrt(pi)/(2 Kn), with the Abramowitz functions
+    T_n(x) = int_0^inf t^n exp(-t^2 - x/t) dt, by Galerkin's method with constants in cells: exact, as T_1'' = T_-1.
     """
     width = np.sqrt(np.pi) / (2 * knudsen)
     s = np.arange(-16.0, 2.0, 0.05)  # t = exp(s): the trapezoidal rule is then exact to rounding
