@@ -23,7 +23,7 @@ from particle.footprint import Footprint
 GAS_CONSTANT, MOLAR_MASS = 8.314462618, 0.0289647  # J/(mol K), and of dry air, kg/mol
 VISCOSITY, WARM, SUTHERLAND = 1.82e-5, 293.15, 110.4  # Pa s, at that temperature, K; of Sutherland's law, K
 RAREFIED, POWER = 9.638, 1.159  # of the flow by the Knudsen number
-NODES = 200  # of an integral over gaps
+NODES = 48  # of an integral over gaps
 
 
 @dataclass(frozen=True)
