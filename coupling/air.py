@@ -21,7 +21,7 @@ import numpy as np
 
 from coupling.case import Case, KogutEtsionCase
 from coupling.drives import fastest
-from coupling.part import air_of, drag_of, footprint_of, gap_under, resting_separation, rough_under, weight_of
+from coupling.part import air_of, footprint_of, gap_under, resting_separation, rough_under, weight_of
 from coupling.scene import PlateScene, Scene
 from particle import KogutEtsion, Trajectory
 from particle.friction import Contact
@@ -44,7 +44,9 @@ class AirFigures:
     settle_time: float | None  # s; None: nothing presses it down
     drag_rate: float  # 1/s
     velocity_change: float  # m/s, the largest of the surface's vertical velocity under the part
-    drags: bool  # whether the path includes the drag
+    included: str  # in the path: "nothing", "drag", or with a "film" its load and drag
+    largest_gap: float | None  # m, the mean under the part in the path with a film; else None, as is the next
+    film_balance: float | None  # the largest gap in the film's energy ledger over the largest of its entries
 
 
 def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> AirFigures | None:
@@ -73,7 +75,9 @@ def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Cont
         settle_time=impulse / weight if weight > 0 else None,
         drag_rate=air.drag(footprint.area, gap) / mass,
         velocity_change=velocity,
-        drags=drag_of(case) > 0,
+        included="nothing" if case.air is None or air.pressure == 0 else "film" if case.air.film else "drag",
+        largest_gap=None if trajectory.gap is None else float(trajectory.gap.max()),
+        film_balance=None if trajectory.film_energy is None else trajectory.film_energy.balance,
     )
 
 

@@ -73,6 +73,8 @@ def why_none(case: Case, scene: Scene, trajectory: Trajectory) -> str:
         return trajectory.sentence
     if trajectory.outcome in KEPT and trajectory.distance > FAR * scene.surface.size:
         return "The part moves already, and stays on."
+    if case.air is not None and case.air.film:
+        return "Thresholds are those of a part without a film of air."
     if any(case.part.velocity) or case.part.spin:
         return "The part is on the move from the start, and thresholds are those of a part at rest."
     if strokes_alone(scene) and stretches(scene):

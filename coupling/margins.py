@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -76,7 +77,8 @@ def margins_of(scene: Scene, path: PathLoads) -> Margins:
     load = largest(lambda times: _or_least(-path.sampled(times)[1]), path.times, _or_least(-loads))
     if len(path.slips):
         slip = Extreme(1.0, float(path.slips[0]))  # also where a blow makes it slip
-    distance = Extreme((path.part.law.pull_off - load.value) / path.scale, load.time)
+    pull_off = math.inf if trajectory.gap is not None else path.part.law.pull_off  # on a film of air no part comes off
+    distance = Extreme((pull_off - load.value) / path.scale, load.time)
     loss = float(path.sampled(np.array([load.time]))[2][0])
     if off := [event.time for event in trajectory.events if event.kind is EventKind.DETACHES]:
         distance = Extreme(0.0, off[0])  # also where a blow throws it off
@@ -129,7 +131,7 @@ class PathLoads:
     def curves(self) -> MarginCurves:
         """The margins over time."""
         slip, load, _ = self.own
-        pull_off = self.part.law.pull_off
+        pull_off = self.part.law.pull_off if self.trajectory.gap is None else np.inf
         contact = (load + pull_off) / self.scale if np.isfinite(pull_off) else np.full(len(load), np.nan)
         return MarginCurves(self.times, slip, contact)
 
@@ -145,6 +147,8 @@ class PathLoads:
         stuck = (samples.state == State.STICK) | begins
         loads = np.where(samples.state == State.FLIGHT, np.nan, samples.normal_force)
         ratios = np.full(len(times), np.nan)
+        if self.trajectory.gap is not None:
+            return ratios, loads, np.zeros(len(times))  # what friction gives on a film depends on the gap
         ratios[stuck] = pull_ratios(self.part, loads[stuck], self.part.mass * samples.pull[stuck])
         return ratios, loads - samples.bend_loss, samples.bend_loss
 

@@ -16,6 +16,7 @@ from particle import (
     ConstantFriction,
     ContactSamples,
     CoulombAdhesion,
+    Film,
     Footprint,
     FrictionTable,
     KogutEtsion,
@@ -106,7 +107,15 @@ def weight_of(case: Case) -> float:
 
 def air_of(case: Case) -> Air:
     """The air around the part; where a case says nothing of it, that of a room."""
-    return Air(**(case.air or AirCase()).model_dump())
+    return Air(**(case.air or AirCase()).model_dump(exclude={"film"}))
+
+
+def film_of(case: Case) -> Film | None:
+    """The film of air under the part; None: the path has none."""
+    if case.air is None or not case.air.film:
+        return None
+    assert case.footprint is not None
+    return Film(air_of(case), case.footprint)
 
 
 def gap_under(case: Case, footprint: Footprint) -> float:
@@ -116,9 +125,9 @@ def gap_under(case: Case, footprint: Footprint) -> float:
 
 
 def drag_of(case: Case) -> float:
-    """The drag [N s/m] of the air under the part; 0 where a case says nothing of it."""
+    """The drag [N s/m] of the air under the part; 0 where a case says nothing of it, or a film has its own."""
     footprint = footprint_of(case)
-    if case.air is None or case.air.pressure == 0 or footprint is None:
+    if case.air is None or case.air.film or case.air.pressure == 0 or footprint is None:
         return 0.0
     return air_of(case).drag(footprint.area, gap_under(case, footprint))
 
@@ -149,7 +158,7 @@ def build_point(case: Case, position: tuple[float, float] | None = None) -> Micr
     p, place = case.part, position or case.part.position
     if p.face is not None:
         raise ValueError("part.footprint must not be given here, where parts are points")
-    return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height, drag_of(case))
+    return Micropart(p.mass, place, p.velocity, p.squeeze, p.centre_height, drag_of(case), film_of(case))
 
 
 def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float | None:

@@ -14,7 +14,7 @@ from active_surface.parameter import Parameter
 from coupling.case import Case, Field, find_field, quoted
 
 FACTOR: Final = 10.0  # either way, of usual bounds
-FREE: Final = ("part", "friction")  # tables whose fields one moving surface serves
+FREE: Final = ("part", "friction", "air")  # tables whose fields one moving surface serves
 PLACES: Final = ("part.position.", "part.velocity.", "part.heading", "part.spin")  # of which a factor says nothing
 EXAMPLES: Final = {"N": '"1 nN", "1 uN"', "m": '"0 um", "100 um"', "kg": '"1e-10 kg", "1e-8 kg"'}
 
@@ -81,7 +81,7 @@ def _parameter(case: Case, kind: str, path: str, bounds: Sequence[Any] | None) -
     try:
         field = find_field(case, None, path)
         if field.locations[0][0] not in FREE:
-            raise ValueError(f"must be fields of [part] or [friction], which leave the surface as it is; got {path}")
+            raise ValueError(f"must be fields of [part], [friction] or [air], which leave the surface as it is; got {path}")
         if field.kind != "number":
             raise ValueError(f"must be numbers; got {path}, a {field.kind}")
         name = f"bounds of {path}"

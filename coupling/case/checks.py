@@ -116,7 +116,14 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
 
 def _air(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
     """Yield what does not go with the air around the part."""
-    if tables.air is None or tables.air.pressure == 0:
+    if tables.air is None:
+        return
+    if tables.air.film and tables.air.pressure == 0:
+        yield ("air", "film"), "must be false in a vacuum"
+    elif tables.air.film and any(part.face for part in parts.values()):
+        where = "[[parts]]" if tables.parts else "[part]"
+        yield ("air", "film"), f"must be false with a footprint in {where}: only a point's square has a film"
+    if tables.air.pressure == 0:
         return
     if tables.run.scheme != "events":
         yield ("run", "scheme"), f'must be "events" with [air], unless that is a vacuum; got "{tables.run.scheme}"'

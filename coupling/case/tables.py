@@ -63,6 +63,8 @@ class AirCase(Table):
     """Its temperature."""
     bow: Length = Field(default=0.0, ge=0, examples=["0.5 um"])
     """What a face that is not flat, or stands on feet, adds to the gap under it."""
+    film: bool = False
+    """Whether the path includes the film of air under a point's square, which bears load, besides its drag."""
 
 
 def _alternatives(schema: dict[str, Any]) -> None:
@@ -97,7 +99,7 @@ class CaseTables(Table):
     friction: AnyFriction
     """The friction between part and surface."""
     air: AirCase | None = None
-    """The air around the part, which drags at it as it slips; without it there is none."""
+    """The air around the part, which drags at it as it slips; without it the path has none."""
     run: RunCase
     """How long the part is followed, and how exactly."""
 

@@ -164,6 +164,9 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
         texts.append(_slip(s, margins.slip))
     if margins.contact is not None:
         texts.append(_contact(s, margins.contact))
+    elif s.air is not None and s.air.largest_gap is not None:
+        load, gap = quantity(margins.smallest_load, "N"), quantity(s.air.largest_gap, "m")
+        texts.append(f"contact: the load on the asperities falls to {load}; the film of air opens to {gap}")
     elif margins.smallest_load < 0:
         load = quantity(margins.smallest_load, "N")
         texts.append(f"contact: the load falls to {load}, which only a law without pull-off bears")
@@ -252,8 +255,10 @@ def _air(air: AirFigures) -> Iterator[str]:
     share = "" if air.load_share is None else f"; load share {air.load_share:.2g}, breathing {air.breathing:.2g}"
     yield f"{at}over a gap of {gap}{by}{share}"
     settles = "" if air.settle_time is None else f", settles in {quantity(air.settle_time, 's')}"
-    drags = "" if air.drags else ", left out"
+    drags = ", left out" if air.included == "nothing" else ""
     yield f"escapes from {quantity(air.escape_speed, 'm/s')}{settles}; drag rate {air.drag_rate:.3g} per second{drags}"
+    if air.film_balance is not None:
+        yield f"a film carries part of the load; its energy ledger closes to {air.film_balance:.1e} of its largest entry"
 
 
 def _model(s: PlateSummary) -> list[tuple[str, str]]:

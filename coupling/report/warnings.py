@@ -124,15 +124,15 @@ def _of_contact(s: Summary) -> Iterator[str]:
 
 def _of_air(s: Summary) -> Iterator[str]:
     air = s.air
-    if air is None:
+    if air is None or air.included == "film":
         return
-    at = f"At {quantity(air.pressure, 'Pa', 4)} "
+    at, face = f"At {quantity(air.pressure, 'Pa', 4)} ", s.turned is not None
     if air.load_share is not None and air.load_share > MAX_AIR:
         off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"
         yield (
             f"{at}a film of air under the part carries {air.load_share:.2g} times as much of the load's swing as the "
             f"contact, and friction lags: expect the way to be off by {off}. Below 1 kPa, or on feet of 2 um, it "
-            "carries next to none."
+            f"carries next to none. [air] with film = true includes it{' for a part without a footprint' * face}."
         )
     if air.breathing is not None and air.breathing > MAX_AIR:
         yield (

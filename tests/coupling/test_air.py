@@ -58,7 +58,7 @@ def test_the_figures_of_a_part_of_the_reference(shaken: Summary) -> None:
     assert air.drag_rate == pytest.approx(414.9, rel=1e-4)
     assert air.velocity_change == pytest.approx(2 * 2 * math.pi * 1000 * 1e-6, rel=1e-3)  # a sine's
     assert not air.assumed
-    assert not air.drags
+    assert air.included == "nothing"
 
 
 def test_a_plate_that_bends_breathes() -> None:
@@ -115,7 +115,7 @@ def test_air_slows_a_part_and_rarefied_air_less(tmp_path: Any) -> None:
     }
     ways = [summary.distance for summary in ends.values()]
     assert ways[0] < ways[1] < ways[2]
-    assert all(summary.energy_balance < 1e-9 and air_of(summary).drags for summary in ends.values())
+    assert all(summary.energy_balance < 1e-9 and air_of(summary).included == "drag" for summary in ends.values())
     saved = read_run(tmp_path / "1/case")
     assert saved.case.air == case(air={"pressure": "1 Pa"}).air
     assert json.loads(json.dumps(saved.summary["air"]))["pressure"] == 1.0

@@ -111,6 +111,8 @@ def feasibility(
     most = spans[1] * stroke if largest is None else largest
     if not case.actuators:
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
+    if case.air is not None and case.air.film:
+        raise ValueError("Input case of feasibility must have no film of air (air.film): its bounds leave that out")
     if areas and (case.part.face is not None or case.part.local_contact):
         raise ValueError("Input areas of feasibility must be false with part.footprint or part.local_contact")
     if not frequency:
