@@ -15,6 +15,7 @@ from particle.events.mechanics.equations import (
     Part,
     at_centre,
     at_contact,
+    braked,
     by_centre,
     carried,
     drag,
