@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -69,7 +70,7 @@ class Film:
         local = contact if isinstance(contact, LocalContact) else None
         own = local.contact if local else contact if isinstance(contact, KogutEtsion) else KogutEtsion()
         rough = isinstance(contact, (LocalContact, KogutEtsion))
-        law = (local or LocalContact(own, self.size)).law
+        law = (local or _square(own, self.size)).law
         air, half = self.air, self.size / 2
         points, weights = _half_square()
         values, slopes = _functions(points)
@@ -103,6 +104,12 @@ def unscaled(friction: Contact) -> tuple[Any, float]:
         factor *= friction.factor
         friction = friction.contact
     return friction, factor
+
+
+@lru_cache(maxsize=16)
+def _square(contact: KogutEtsion, size: float) -> LocalContact:
+    """The contact under a square, made once."""
+    return LocalContact(contact, size)
 
 
 def _half_square(count: int = SIDE_POINTS) -> tuple[FloatArray, FloatArray]:
