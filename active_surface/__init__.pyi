@@ -43,6 +43,7 @@ from fem_plate import (
     save_influence as save_influence,
 )
 from particle import (
+    Air as Air,
     AnyDrive as AnyDrive,
     Body as Body,
     ConstantFriction as ConstantFriction,

@@ -131,8 +131,8 @@ def _of_air(s: Summary) -> Iterator[str]:
         off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"
         yield (
             f"{at}a film of air under the part carries {air.load_share:.2g} times as much of the load's swing as the "
-            f"contact, and friction lags: expect the way to be off by {off}. Below 1 kPa, or on feet of 2 um, it carries next "
-            "to none."
+            f"contact, and friction lags: expect the way to be off by {off}. Below 1 kPa, or on feet of 2 um, it "
+            "carries next to none."
         )
     if air.breathing is not None and air.breathing > MAX_AIR:
         yield (

@@ -26,7 +26,7 @@ CONTENTS = {  # the pages below a page, by caption
             *("commands", "case-file", "results", "pictures", "app"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
-        "Theory": ["plate", "surface", "motion", "contact", "large-deflection", "inertia", "face"],
+        "Theory": ["plate", "surface", "motion", "contact", "large-deflection", "inertia", "face", "air"],
         "Trust": ["limits", "accuracy", "paper", "trust"],
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture"],

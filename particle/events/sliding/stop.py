@@ -9,7 +9,7 @@ across it), |A| < Q stops the part after
 
 Here p, r, X and Y are the contact's, and A and Q are multiplied by d.K^2 d of `mechanics.breakaway`, which is 1
 where the contact is as high as the centre of mass. What K^2 has across d is left to the error. The drag c u of air
-counts by its mean: Q stands for Q + c u/(2 m).
+counts by its mean, Q + c u/(2 m) in place of Q, which is right to (c T/m)^2/12 in T, and to c T/(6 m) in X.
 
 A pull A > Q instead turns a part that moves nearly straight against it, after T = u/(A + Q), X = p u/(2 (A + Q)) and
 Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
@@ -91,7 +91,7 @@ def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float
     p_x, p_y = at_centre(f, part, a.demand * a.d_x, a.demand * a.d_y)
     c_x, c_y = c_x + p_x * time, c_y + p_y * time
     loss = (0.5 * u * u + force * along) / straight
-    miss = bent * abs(along) + (bent + wide) * abs(across)
+    miss = bent * abs(along) + (bent + wide) * abs(across) + part.drag / part.mass * time * math.hypot(along, across)
     return Stop(time, x, y, reverses, c_x, c_y, loss, miss)
 
 
@@ -112,7 +112,8 @@ def stop_ahead(
     later = frozen_stop(g, part, rest_pull(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
-    miss = max(math.hypot(later.x - now.x, later.y - now.y) + later.miss, pace * abs(later.time - now.time))
+    slower = (part.drag / part.mass * later.time) ** 2 * later.time
+    miss = max(math.hypot(later.x - now.x, later.y - now.y) + later.miss, pace * (abs(later.time - now.time) + slower))
     return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 

@@ -1,0 +1,152 @@
+"""What the air under a part does: its figures, its warnings, and its drag in a run."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from coupling import Case, PlateSummary, Summary, read_run, run_case, warnings
+from coupling.air import AirFigures
+from coupling.case import InputError
+from coupling.report import lines
+from particle import Outcome
+
+G = 9.80665
+TABLES: dict[str, Any] = {
+    "plate": {"shape": "platform", "motion": {"z": {"stroke": "1 um", "frequency": "1 kHz", "cycle": "sine"}}},
+    "part": {"mass": "2e-9 kg", "position": ["0 um", "0 um"], "size": "100 um", "velocity": ["20 mm/s", "0 mm/s"]},
+    "friction": {"model": "kogut-etsion"},
+    "run": {"duration": "1 ms"},
+}
+PLATE = {
+    "shape": "disc",
+    "radius": "1.2 mm",
+    "supports": "clamped",
+    "youngs_modulus": "169 GPa",
+    "poisson_ratio": 0.3,
+    "thickness": "100 um",
+}
+
+
+def case(**tables: Any) -> Case:
+    return Case.model_validate(TABLES | tables)
+
+
+def air_of(summary: Summary) -> AirFigures:
+    assert summary.air is not None
+    return summary.air
+
+
+@pytest.fixture(scope="module")
+def shaken() -> Summary:
+    return run_case(case()).summary
+
+
+def test_the_figures_of_a_part_of_the_reference(shaken: Summary) -> None:
+    """Gamma at 1 kHz is 2 pi f C/k_c with C = .141671 N s/m and k_c = 1340.28 N/m; the rest by hand likewise."""
+    air = air_of(shaken)
+    assert air.gap == pytest.approx(88.727749e-9, rel=1e-7)
+    assert air.frequency == 1000.0
+    assert air.load_share == pytest.approx(2 * math.pi * 1000 * 0.141671 / 1340.28, rel=2e-5)
+    assert air.breathing == 0.0  # a platform does not bend
+    assert air.escape_speed == pytest.approx(5.4, rel=2e-3)
+    assert air.settle_time == pytest.approx(1.0796e-8 / (2e-9 * G), rel=1e-4)
+    assert air.drag_rate == pytest.approx(414.9, rel=1e-4)
+    assert air.velocity_change == pytest.approx(2 * 2 * math.pi * 1000 * 1e-6, rel=1e-3)  # a sine's
+    assert not air.assumed
+    assert not air.drags
+
+
+def test_a_plate_that_bends_breathes() -> None:
+    """Beta by the definition, from the plate's own change of curvature."""
+    actuators = [{"position": ["0 um", "0 um"], "stroke": "2 um", "frequency": "2 kHz", "cycles": 3}]
+    part = {"mass": "2e-9 kg", "position": ["300 um", "200 um"], "size": "95 um"}
+    friction = {"model": "coulomb", "coefficient": 0.1, "adhesion": "1.5 uN"}
+    tables = {"plate": PLATE, "actuators": actuators, "part": part, "friction": friction}
+    result = run_case(Case.model_validate(tables | {"run": {"duration": "1 ms"}}))
+    air, surface = air_of(result.summary), result.surface
+    path = result.trajectory
+    bends = surface.evaluate_along(path.position, path.time).hessian.trace(axis1=1, axis2=2)
+    stiffness = 1340.28 * 0.95**2
+    share = air.load_share
+    assert share is not None
+    pumped = stiffness * 0.0262 * (95e-6) ** 2 * (bends.max() - bends.min()) / (2e-9 * G + 1.5e-6)
+    assert air.breathing == pytest.approx(pumped * share / math.hypot(1, share), rel=2e-2)
+    assert air.assumed
+    said = " ".join(warnings(result.summary))
+    assert "a film of air under the part carries" in said
+    assert "pumps air under the part" in said
+    assert "assumed, as the friction law states none" in str(lines(result.summary, verbose=True))
+
+
+def test_warnings_begin_at_their_bounds(shaken: Summary) -> None:
+    def texts(**figures: Any) -> str:
+        return " ".join(warnings(replace(shaken, air=replace(air_of(shaken), **figures))))
+
+    assert "expect the way to be off by as much as the way itself" in texts(load_share=0.66)
+    assert "expect the way to be off by about 20 %" in texts(load_share=0.2)
+    assert "film of air" not in texts(load_share=0.04)
+    assert "pumps" not in texts(breathing=0.04)
+
+
+def test_a_part_that_comes_off_a_slow_plate_does_so_in_a_vacuum_only(shaken: Summary) -> None:
+    loose = replace(shaken, outcome=Outcome.DETACHED.value)
+    assert "would not come off: air holds it on a plate slower than 5.4 m/s" in " ".join(warnings(loose))
+    fast = replace(loose, air=replace(air_of(shaken), velocity_change=6.0))
+    assert "would not come off" not in " ".join(warnings(fast))
+
+
+def test_a_vacuum_has_no_figures_to_warn_of_and_the_same_bits(shaken: Summary) -> None:
+    result = run_case(case(air={"pressure": "0 Pa"}))
+    assert air_of(result.summary).load_share == air_of(result.summary).drag_rate == 0.0
+    assert not [text for text in warnings(result.summary) if " air " in text]
+    assert "none: in a vacuum" in str(lines(result.summary, verbose=True))
+    assert result.summary.end_position == shaken.end_position
+
+
+def test_air_slows_a_part_and_rarefied_air_less(tmp_path: Any) -> None:
+    ends = {
+        text: run_case(case(air={"pressure": text}), tmp_path / text[0] if text == "1 Pa" else None).summary
+        for text in ("101325 Pa", "1000 Pa", "1 Pa")
+    }
+    ways = [summary.distance for summary in ends.values()]
+    assert ways[0] < ways[1] < ways[2]
+    assert all(summary.energy_balance < 1e-9 and air_of(summary).drags for summary in ends.values())
+    saved = read_run(tmp_path / "1/case")
+    assert saved.case.air == case(air={"pressure": "1 Pa"}).air
+    assert json.loads(json.dumps(saved.summary["air"]))["pressure"] == 1.0
+
+
+def test_a_bow_lessens_what_the_air_does() -> None:
+    bowed = air_of(run_case(case(air={"bow": "2 um"})).summary)
+    assert bowed.gap == pytest.approx(2.0887e-6, rel=1e-4)
+    assert bowed.load_share is not None
+    assert bowed.load_share < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"air": {"pressure": "-1 Pa"}}, "Input air.pressure of Case must be at least 0"),
+        ({"air": {"temperature": "0 K"}}, "Input air.temperature of Case must be greater than 0"),
+        ({"air": {}, "run": {"duration": "1 ms", "scheme": "fixed"}}, 'run.scheme of Case must be "events" with .air'),
+        (
+            {"air": {}, "friction": {"model": "coulomb", "coefficient": 0.1}, "part": TABLES["part"] | {"size": None}},
+            "Input part.size of Case is missing; with .air., unless that is a vacuum, it must be a length",
+        ),
+    ],
+)
+def test_wrong_air_is_refused(tables: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        case(**tables)
+
+
+def test_a_part_without_a_size_has_no_figures_of_air() -> None:
+    part = {key: value for key, value in TABLES["part"].items() if key != "size"}
+    summary = run_case(case(part=part, friction={"model": "constant", "limit": "5 nN"})).summary
+    assert summary.air is None
+    assert not isinstance(summary, PlateSummary)
