@@ -115,7 +115,7 @@ def _square(contact: KogutEtsion, size: float) -> LocalContact:
 def _half_square(count: int = SIDE_POINTS) -> tuple[FloatArray, FloatArray]:
     """Gauss's points (n, 2) of half the square of side 2, and their weights (n,), which make 1."""
     x, w_x = np.polynomial.legendre.leggauss(count)
-    y, w_y = np.polynomial.legendre.leggauss(count)
+    y, w_y = np.polynomial.legendre.leggauss(count // 2)
     places = np.meshgrid(x, (y + 1) / 2, indexing="ij")
     return np.column_stack([along.ravel() for along in places]), np.outer(w_x, w_y).ravel() / 4
 

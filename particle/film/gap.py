@@ -30,6 +30,7 @@ from particle.records import Record
 from particle.types import FloatArray
 
 TURNS, SETTLED = 100, 1e-6  # Newton's steps, and roughnesses: the next would be the square of that
+TRUST = 3e-5  # roughnesses, over which the asperities' load is a parabola
 LEAST = 0.05  # roughnesses, of the gap at the nearest point
 FARTHEST = 1e7  # roughnesses
 WALK = 0.05, 9.0  # roughnesses: steps in which the gap at rest is looked for, and over the nearest point, to where
@@ -68,11 +69,16 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     over = _highest(layer, g)
     lowest = max((over if layer.bends else 0.0) + layer.closed, over + LEAST - layer.offset / layer.law.roughness)
     low, high, z, step = -math.inf, math.inf, max(g.z, lowest), 0.0
+    net = net_slope = off = 0.0
     g.verdict = Verdict.GOES_ON
-    borne = _asperities(layer, z, g)
+    borne, at = _asperities(layer, z, g), z
     for _ in range(TURNS):
+        if abs(z - at) > TRUST:
+            borne, at = _asperities(layer, z, g), z
         _fill_film(layer, contents, z, g)
-        above, slope = borne.net + g.air - load, borne.slope + g.slope
+        off = z - at
+        net, net_slope = borne.net + off * (borne.slope + 0.5 * off * borne.bend), borne.slope + off * borne.bend
+        above, slope = net + g.air - load, net_slope + g.slope
         if above > 0.0:
             low = z
         else:
@@ -93,14 +99,13 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
         if abs(step) < SETTLED:
             break
         z += step
-        borne = _asperities(layer, z, g)
     for i in range(FUNCTIONS):
         g.excess[i] += step * g.change[i]
     g.z, g.near = z + step, z + step - over
-    g.load, g.air = borne.net + step * borne.slope, g.air + step * g.slope
-    g.slope += borne.slope
+    g.load, g.air = net + step * net_slope, g.air + step * g.slope
+    g.slope += net_slope
     g.width = layer.offset + g.z * layer.law.roughness - layer.half * layer.half * (g.xx + g.yy) / 6
-    g.limit = borne.limit + step * borne.limit_slope if layer.grips else friction_limit(law, g.load)
+    g.limit = borne.limit + (off + step) * borne.limit_slope if layer.grips else friction_limit(law, g.load)
 
 
 @device_no_arrays
