@@ -23,7 +23,7 @@ from typing import Annotated
 
 from particle.air import POWER
 from particle.film.film import FUNCTIONS, Layer
-from particle.friction import FrictionLaw, Pressures, friction_limit, pressures, rule_for, spread_of, sums
+from particle.friction import FrictionLaw, friction_limit, pressures, rule_for, spread_of, sums
 from particle.jit import device_no_arrays
 from particle.modes import Verdict
 from particle.records import Record
@@ -54,7 +54,18 @@ class Gap(Record):
     demand: float  # N, the friction that a part at rest needs
     normal: float  # N, on the part
     speed: float  # m/s, of the slip
+    pull_x: float  # m/s^2, the part's acceleration without friction
+    pull_y: float
     verdict: int  # GOES_ON, or why there is no such gap
+    at: float  # roughnesses, the z of the asperities' forces that follow, on a surface with these second derivatives
+    at_xx: float
+    at_xy: float
+    at_yy: float
+    net: float  # N, and its first two derivatives by z
+    net_slope: float
+    net_bend: float
+    borne: float  # N, their friction limit, and its derivative
+    borne_slope: float
     excess: Annotated[FloatArray, FUNCTIONS]  # a
     change: Annotated[FloatArray, FUNCTIONS]  # of a with z
     matrix: Annotated[FloatArray, FUNCTIONS, FUNCTIONS]  # <psi_i psi_j h>, then its factors
@@ -71,13 +82,12 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     low, high, z, step = -math.inf, math.inf, max(g.z, lowest), 0.0
     net = net_slope = off = 0.0
     g.verdict = Verdict.GOES_ON
-    borne, at = _asperities(layer, z, g), z
     for _ in range(TURNS):
-        if abs(z - at) > TRUST:
-            borne, at = _asperities(layer, z, g), z
+        if not (abs(z - g.at) <= TRUST and g.xx == g.at_xx and g.xy == g.at_xy and g.yy == g.at_yy):
+            _fill_asperities(layer, z, g)
         _fill_film(layer, contents, z, g)
-        off = z - at
-        net, net_slope = borne.net + off * (borne.slope + 0.5 * off * borne.bend), borne.slope + off * borne.bend
+        off = z - g.at
+        net, net_slope = g.net + off * (g.net_slope + 0.5 * off * g.net_bend), g.net_slope + off * g.net_bend
         above, slope = net + g.air - load, net_slope + g.slope
         if above > 0.0:
             low = z
@@ -105,7 +115,7 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     g.load, g.air = net + step * net_slope, g.air + step * g.slope
     g.slope += net_slope
     g.width = layer.offset + g.z * layer.law.roughness - layer.half * layer.half * (g.xx + g.yy) / 6
-    g.limit = borne.limit + (off + step) * borne.limit_slope if layer.grips else friction_limit(law, g.load)
+    g.limit = g.borne + (off + step) * g.borne_slope if layer.grips else friction_limit(law, g.load)
 
 
 @device_no_arrays
@@ -114,8 +124,8 @@ def fill_gap_at_rest(layer: Layer, load: float, contents: FloatArray, g: Gap) ->
     over = _highest(layer, g)
     top = over if layer.bends else 0.0
     low = z = max(top + layer.closed, over + LEAST - layer.offset / layer.law.roughness)
-    g.verdict = Verdict.GOES_ON if _asperities(layer, z, g).net >= load else Verdict.OVERLOADED
-    while g.verdict == Verdict.GOES_ON and _asperities(layer, z, g).net > load:
+    g.verdict = Verdict.GOES_ON if _load_at(layer, z, g) >= load else Verdict.OVERLOADED
+    while g.verdict == Verdict.GOES_ON and _load_at(layer, z, g) > load:
         low, z = z, z + WALK[0]
         if z > top + WALK[1]:
             g.verdict = Verdict.DETACHED
@@ -124,7 +134,7 @@ def fill_gap_at_rest(layer: Layer, load: float, contents: FloatArray, g: Gap) ->
         z = 0.5 * (low + high)
         if z <= low or z >= high:
             break
-        if _asperities(layer, z, g).net > load:
+        if _load_at(layer, z, g) > load:
             low = z
         else:
             high = z
@@ -200,15 +210,26 @@ def _mean(layer: Layer, i: int, z: float, g: Gap) -> float:
 
 
 @device_no_arrays
-def _asperities(layer: Layer, z: float, g: Gap) -> Pressures:
-    """N_c and Q [N] at z, with derivatives by it."""
+def _fill_asperities(layer: Layer, z: float, g: Gap) -> None:
+    """N_c and Q [N] at z, with derivatives by it, into `g`."""
     law = layer.law
     spread = spread_of(law, g.xx, g.xy, g.yy) if layer.bends else 0.0
+    g.at, g.at_xx, g.at_xy, g.at_yy = z, g.xx, g.xy, g.yy
     if spread == 0.0:
         p, area = pressures(law, z), layer.area
-        return Pressures(area * p.net, area * p.slope, area * p.bend, area * p.limit, area * p.limit_slope)
+        g.net, g.net_slope, g.net_bend = area * p.net, area * p.slope, area * p.bend
+        g.borne, g.borne_slope = area * p.limit, area * p.limit_slope
+        return
     first, end = rule_for(law, spread)
-    return sums(law, first, end, z, g.xx, g.xy, g.yy)
+    p = sums(law, first, end, z, g.xx, g.xy, g.yy)
+    g.net, g.net_slope, g.net_bend, g.borne, g.borne_slope = p.net, p.slope, p.bend, p.limit, p.limit_slope
+
+
+@device_no_arrays
+def _load_at(layer: Layer, z: float, g: Gap) -> float:
+    """N_c [N] at z."""
+    _fill_asperities(layer, z, g)
+    return float(g.net)
 
 
 @device_no_arrays

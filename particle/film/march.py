@@ -11,14 +11,25 @@ import math
 import numpy as np
 
 from particle.body.collocation import ORDER, STAGES
-from particle.events import PathRecord, Request, last_row, note, write
+from particle.events import FIRST_STEP, PathRecord, Request, last_row, note, write
 from particle.events.flight import MIN_JUMP, velocity_jump
-from particle.events.mechanics import Counts, Now, at_contact, first_slip, mobility, over_plane, pull
+from particle.events.mechanics import (
+    Counts,
+    Now,
+    RestPull,
+    at_contact,
+    first_slip,
+    mobility,
+    over_plane,
+    pull,
+    rest_pull,
+)
+from particle.events.sliding import Stop, frozen_stop
 from particle.film.film import Layer
 from particle.film.gap import Gap, fill_gap_at_rest, stored
 from particle.film.memory import CONTENTS, HEAT, LOSS, PUMPED, SOLVED, STATE, STORED, V_X, V_Y, WORK, Memory, X, Y, Z
-from particle.film.state import energy_now, fill_rate, fill_row, is_off, leaves, settle
-from particle.film.step import attempt, begin_step, error_of, fill_within, take_step
+from particle.film.state import drag_of, energy_now, fill_rate, fill_row, is_off, leaves, settle
+from particle.film.step import LONGER, attempt, begin_step, error_of, fill_within, take_step
 from particle.jit import device, device_no_arrays, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface, allow_bridges, enter, gap_at, surface_at
@@ -26,8 +37,8 @@ from particle.types import FloatArray
 
 FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
 CLOSE = 1e-9  # of the limit: how close a slip that was located begins to it
-BEFORE_STOP = 0.75  # of the time to a stop: the longest step
-STOPPED = 1e-7, 1e-3  # of a stroke, of the tolerance: how close a stop's time and place must be
+BEFORE_STOP = 0.85  # of the time to a stop: the longest step
+STOPPED = 2e-5, 1e-2  # of a stroke, of the tolerance: how close a stop's time and place must be
 LOOKS = 6  # moments of a step at rest that are looked at
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-12
 EVALUATIONS_PER_SPAN, MIN_EVALUATIONS = 50_000, 500_000
@@ -177,28 +188,42 @@ def _slide(surface: Surface, request: Request, layer: Layer, memory: Memory) -> 
     fill_rate(request, layer, memory, step.state, now.time, now.mode, g, step.rate)
     if now.mode == Mode.SLIDING and g.slowing > 0.0:
         until = g.speed / g.slowing
-        close = until < STOPPED[0] * request.stroke_time and g.speed * until < STOPPED[1] * request.tolerance
-        if close and until <= now.span_end - now.time:
-            return _stop(request, layer, memory, until)
+        if until < STOPPED[0] * request.stroke_time and g.speed * until < STOPPED[1] * request.tolerance:
+            stop = _stop_ahead(request, layer, memory)
+            if stop.time <= min(now.span_end - now.time, STOPPED[0] * request.stroke_time):
+                return _stop(request, layer, memory, stop)
         now.h = min(now.h, BEFORE_STOP * until)
     return _advance(surface, request, layer, memory)
 
 
 @inlined
-def _stop(request: Request, layer: Layer, memory: Memory, until: float) -> int:
-    """Move a part that stops after `until` [s], with forces as they are, to its stop."""
+def _stop_ahead(request: Request, layer: Layer, memory: Memory) -> Stop:
+    """The stop of a sliding part with forces as they are."""
+    part, state, g = request.part, memory.step[0].state, memory.gap[0]
+    f = surface_at(memory.local, state[X], state[Y], memory.now[0].time)
+    a = rest_pull(f, part)
+    limit = (g.limit + 0.5 * drag_of(layer, g.width) * g.speed) / part.mass
+    a = RestPull(a.demand, limit, a.d_x, a.d_y, a.n_x, a.n_y, a.load)
+    return frozen_stop(f, part, a, state[V_X], state[V_Y], STOPPED[1] * request.tolerance)
+
+
+@inlined
+def _stop(request: Request, layer: Layer, memory: Memory, stop: Stop) -> int:
+    """Move a part to its stop."""
     now: Now = memory.now[0]
     step, state, g = memory.step[0], memory.step[0].state, memory.gap[0]
-    for i in (X, Y, WORK, LOSS):
-        state[i] += 0.5 * until * step.rate[i]
-    for i in range(CONTENTS, SOLVED):
-        state[i] += until * step.rate[i]
-    state[HEAT] += until * step.rate[HEAT]
+    before, lost = energy_now(request, memory), request.part.mass * stop.loss
+    state[X], state[Y] = state[X] + stop.x, state[Y] + stop.y
     state[V_X] = state[V_Y] = 0.0
-    now.time += until
-    now.mode = Mode.RESTING
+    for i in range(CONTENTS, SOLVED):
+        state[i] += stop.time * step.rate[i]
+    state[HEAT] += stop.time * step.rate[HEAT]
+    now.time += stop.time
+    now.mode, now.h, step.before = Mode.RESTING, FIRST_STEP * request.stroke_time, 0.0
+    state[LOSS] += lost
+    state[WORK] += energy_now(request, memory) - before + lost
     settle(request, layer, memory, state, now.time, g)
-    state[PUMPED] += stored(layer, g) - state[STORED] + until * step.rate[HEAT]
+    state[PUMPED] += stored(layer, g) - state[STORED] + stop.time * step.rate[HEAT]
     return EventKind.REVERSES.value if leaves(request, g) > CLOSE else EventKind.STOPS.value
 
 
@@ -216,7 +241,7 @@ def _advance(surface: Surface, request: Request, layer: Layer, memory: Memory) -
         if not attempt(surface, request, layer, memory, now.h):
             now.h *= 0.4
             continue
-        error = error_of(surface, request, memory, now.h) / request.tolerance
+        error = error_of(surface, request, layer, memory, now.h) / request.tolerance
         if not error <= 1.0:
             now.h *= max(0.2, SAFETY * error ** (-1 / ORDER)) if error > 1.0 else 0.2
             continue
@@ -382,7 +407,7 @@ def _begin_slip(surface: Surface, request: Request, layer: Layer, memory: Memory
     lost = g.limit * way
     state[LOSS] += lost
     state[WORK] += energy_now(request, memory) - before + lost
-    now.mode, now.h = Mode.SLIDING, moment
+    now.mode, now.h = Mode.SLIDING, LONGER * moment
     return True
 
 

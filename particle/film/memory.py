@@ -58,9 +58,11 @@ class Memory(NamedTuple):
 
 def new_memory(surface: Surface, stop: IntArray) -> Memory:
     """Scratch memory that fits the surface."""
+    gap = new_records(Gap, STAGES + 2)
+    gap["at"] = np.nan  # nothing is known yet
     return Memory(
         local=new_local(surface),
-        gap=new_records(Gap, STAGES + 2),
+        gap=gap,
         step=new_records(Step),
         system=np.zeros((SOLVED, SOLVED + 1), dtype=np.complex128),
         ahead=np.zeros(SOLVED, dtype=np.complex128),

@@ -3,29 +3,30 @@
 from __future__ import annotations
 
 from particle.events import Request, Row
-from particle.events.mechanics import at_contact, braked, energy, inner, length, pull, rising, slip
+from particle.events.mechanics import Pull, at_contact, braked, energy, inner, length, pull, rising, slip
 from particle.film.film import FUNCTIONS, Layer
 from particle.film.gap import Gap, fill_flow, fill_gap, stored
 from particle.film.memory import CONTENTS, HEAT, LOSS, SOLVED, STORED, V_X, V_Y, WORK, Memory, X, Y, Z
 from particle.jit import device_no_arrays
 from particle.modes import Mode, Verdict
-from particle.surface import surface_at
+from particle.surface import SurfacePoint, surface_at
 from particle.types import FloatArray
 
 FAR = 10.0  # roughnesses, of the gap at its nearest point: from there on the part is off the surface
 
 
 @device_no_arrays
-def settle(request: Request, layer: Layer, memory: Memory, state: FloatArray, time: float, g: Gap) -> None:
-    """The gap at a state and time [s], and what a part at rest needs there, into `g`, looked for near state[Z]."""
+def settle(request: Request, layer: Layer, memory: Memory, state: FloatArray, time: float, g: Gap) -> SurfacePoint:
+    """The gap at a state and time [s], looked for near state[Z], and the forces there, into `g`; the surface there."""
     part = request.part
     f = surface_at(memory.local, state[X], state[Y], time)
     p = pull(f, state[V_X], state[V_Y], part)
     memory.counts[0].evaluations += 1
     g.xx, g.xy, g.yy, g.z = f.w_xx, f.w_xy, f.w_yy, state[Z]
-    g.normal, g.speed = p.normal, p.speed
+    g.pull_x, g.pull_y, g.normal, g.speed = p.x, p.y, p.normal, p.speed
     g.demand = part.mass * length(f, *at_contact(f, part, p.x, p.y))
     fill_gap(layer, part.law, state[CONTENTS:SOLVED], p.normal, g)
+    return f
 
 
 @device_no_arrays
@@ -37,7 +38,7 @@ def fill_rate(
     Friction Q and the drag mu A/(<h> + 2 mfp) of the air brake the slip; of a part that is off the surface drag alone.
     """
     part = request.part
-    settle(request, layer, memory, state, time, g)
+    f = settle(request, layer, memory, state, time, g)
     fill_flow(layer, g, rate[CONTENTS:SOLVED])
     heat = 0.0
     for i in range(FUNCTIONS):
@@ -48,12 +49,12 @@ def fill_rate(
     if mode == Mode.RESTING:
         return
     v_x, v_y = state[V_X], state[V_Y]
-    f = surface_at(memory.local, state[X], state[Y], time)
     slow = drag_of(layer, g.width)
     if mode == Mode.SLIDING and g.speed > 0.0:
         slow += g.limit / g.speed
+    p = Pull(g.pull_x, g.pull_y, g.normal, g.speed)
     rate[X], rate[Y] = v_x, v_y
-    rate[V_X], rate[V_Y], rate[WORK] = braked(f, part, pull(f, v_x, v_y, part), slow / part.mass, v_x, v_y)
+    rate[V_X], rate[V_Y], rate[WORK] = braked(f, part, p, slow / part.mass, v_x, v_y)
     rate[LOSS] = slow * g.speed * g.speed
     k_x, k_y = slip(f, part, v_x, v_y)
     a_x, a_y = slip(f, part, rate[V_X], rate[V_Y])
@@ -88,9 +89,8 @@ def fill_row(request: Request, layer: Layer, memory: Memory, mode: int, row: Row
     x, y, v_x, v_y = state[X], state[Y], state[V_X], state[V_Y]
     row.time, row.x, row.y, row.v_x, row.v_y, row.mode = now.time, x, y, v_x, v_y, mode
     row.work, row.dissipated = state[WORK], state[LOSS]
-    settle(request, layer, memory, state, now.time, g)
+    f = settle(request, layer, memory, state, now.time, g)
     state[Z], state[STORED] = g.z, stored(layer, g)
-    f = surface_at(memory.local, x, y, now.time)
     row.z, row.v_z, row.load = f.w, rising(f, v_x, v_y), g.normal
     row.friction = g.demand if mode == Mode.RESTING else (g.limit if mode == Mode.SLIDING else 0.0)
     row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)

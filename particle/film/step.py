@@ -26,8 +26,8 @@ from particle.types import FloatArray
 
 PASSES, FOUND = 10, 1e-3  # FOUND: of what a step may be off by, how exactly its stages are found
 RELATIVE = 1e-2  # of the speed as a step begins: how far a rate may be off at most
-CONTENT = 10.0  # tolerances, of a content over the mean gap
-NUDGE = 1e-6  # of a speed, a gap and the surface's size, to see how rates change
+CONTENT = 50.0  # tolerances, of a content over the roughness
+NUDGE = 1e-6  # of a speed and a gap, to see how rates change; how they do with the place is left to later passes
 LONGER = 2.0  # steps: how far the last step's rates are extrapolated in full
 FOLD = 0.3, 2.0  # of z, and roughnesses more: how far the gap may change in a step
 
@@ -46,13 +46,11 @@ def begin_step(surface: Surface, request: Request, layer: Layer, memory: Memory)
     state, nudged, g = step.state, step.end, memory.gap[0]
     for i in range(STATE):
         nudged[i] = state[i]
-    for j in range(first, SOLVED):
-        size = surface.size
-        if j >= CONTENTS:
-            size = g.width
-        elif j >= V_X:
-            size = g.speed if g.speed > 0.0 else surface.size / request.stroke_time
-        size *= NUDGE
+    memory.gap[1] = g
+    for j in range(max(first, V_X), SOLVED):
+        size = NUDGE * g.width
+        if j < CONTENTS:
+            size = NUDGE * (g.speed if g.speed > 0.0 else surface.size / request.stroke_time)
         nudged[j] = state[j] + size
         fill_rate(request, layer, memory, nudged, now.time, now.mode, memory.gap[1], step.rates[0])
         nudged[j] = state[j]
@@ -96,7 +94,7 @@ def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
                 return False
             if now.mode == Mode.SLIDING and not g.speed > 0.0:
                 return False
-        largest = _newton(surface, request, memory, h, first)
+        largest = _newton(surface, request, layer, memory, h, first)
         if not largest < 1e3 * surface.size:
             return False
         if (min(1.0, largest / before) if turn > 0 else 1.0) * largest <= small:
@@ -109,7 +107,7 @@ def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
 
 
 @device_no_arrays
-def _newton(surface: Surface, request: Request, memory: Memory, h: float, first: int) -> float:
+def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float, first: int) -> float:
     """One of Newton's steps of the stages; its largest change as a distance [m]."""
     step, m, ahead = memory.step[0], memory.system, memory.ahead
     state, stages, n = step.state, step.stages, SOLVED - first
@@ -136,19 +134,19 @@ def _newton(surface: Surface, request: Request, memory: Memory, h: float, first:
     for k in range(STAGES):
         for i in range(first, SOLVED):
             stages[k, i] += step.changes[k, i]
-            largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, memory, i))
+            largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, layer, i))
     return largest
 
 
 @device_no_arrays
-def _unit(surface: Surface, request: Request, memory: Memory, i: int) -> float:
+def _unit(surface: Surface, request: Request, layer: Layer, i: int) -> float:
     """What an error of a number of the state counts as a distance [m] over it.
 
-    A velocity counts as what it moves the part by in the shortest stroke, a content over the gap as a tenth of the
-    surface's size.
+    A velocity counts as what it moves the part by in the shortest stroke, a roughness of gap as a 50th of the surface's
+    size.
     """
     if i >= CONTENTS:
-        return surface.size / (CONTENT * memory.gap[0].width)
+        return surface.size / (CONTENT * layer.law.roughness)
     return request.stroke_time if i >= V_X else 1.0
 
 
@@ -186,7 +184,7 @@ def _finish(layer: Layer, memory: Memory, h: float, first: int) -> None:
 
 
 @device_no_arrays
-def error_of(surface: Surface, request: Request, memory: Memory, h: float) -> float:
+def error_of(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float) -> float:
     """The error of the step tried as a distance [m]."""
     step, first = memory.step[0], first_of(memory)
     m, n = step.system, SOLVED - first
@@ -201,7 +199,7 @@ def error_of(surface: Surface, request: Request, memory: Memory, h: float) -> fl
         return math.inf
     total = 0.0
     for i in range(n):
-        total += (step.off[i] * _unit(surface, request, memory, first + i)) ** 2
+        total += (step.off[i] * _unit(surface, request, layer, first + i)) ** 2
     return math.sqrt(total)
 
 

@@ -13,6 +13,7 @@ from particle.events.mechanics.breakaway import (
 )
 from particle.events.mechanics.equations import (
     Part,
+    Pull,
     at_centre,
     at_contact,
     braked,
