@@ -16,6 +16,8 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "Event",
     "EventKind",
     "FaceLaw",
+    "Film",
+    "FilmEnergy",
     "Footprint",
     "FrictionTable",
     "HermiteDrive",

@@ -66,7 +66,7 @@ def under_way() -> tuple[float, float] | None:
 
 
 @contextmanager
-def _seen(now: NDArray[Any], until: float) -> Iterator[None]:
+def seen(now: NDArray[Any], until: float) -> Iterator[None]:
     """Shows a path to `under_way` in its block."""
     _under_way[threading.get_ident()] = now, until
     try:
@@ -113,14 +113,14 @@ def find_path(
 
     def path(record: Surface) -> Computed:
         memory = _memory(record, pairs, stop)
-        with _seen(memory.now, request.until):
-            return _computed(march(record, request, pairs, memory, new_record()), memory)
+        with seen(memory.now, request.until):
+            return computed_of(march(record, request, pairs, memory, new_record()), memory)
 
-    computed = _with_cells(surface, path)
+    computed = with_cells(surface, path)
     if computed.verdict == Verdict.INTERRUPTED:
         return None
     sampler = partial(_by_events, surface, request, pairs, computed.rows)
-    trajectory = _trajectory(surface, request, computed, sampler, partial(_contact_states, surface, request))
+    trajectory = trajectory_of(surface, request, computed, sampler, partial(_contact_states, surface, request))
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
         future = partial(_stays, surface, request, pairs, x, y)
@@ -133,10 +133,10 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
 
     def path(record: Surface, asked: Request = request) -> Computed:
         memory = new_body_memory(record, face, stop)
-        with _seen(memory.now, asked.until):
-            return _computed(march_body(record, asked, face, memory, new_record()), memory)
+        with seen(memory.now, asked.until):
+            return computed_of(march_body(record, asked, face, memory, new_record()), memory)
 
-    computed = _with_cells(surface, path)
+    computed = with_cells(surface, path)
     if computed.verdict == Verdict.INTERRUPTED:
         return None
     rows = computed.rows
@@ -166,7 +166,7 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
         memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
         return face_states(surface.record, request, face, memory, rows)
 
-    trajectory = _trajectory(surface, request, computed, sampler, contact, face)
+    trajectory = trajectory_of(surface, request, computed, sampler, contact, face)
     if trajectory.outcome is Outcome.STUCK:
         trajectory = replace(trajectory, future=partial(_face_stays, surface, request, face, trajectory))
     return trajectory
@@ -179,15 +179,15 @@ def find_path_by_steps(
 
     def path(record: Surface) -> Computed:
         memory = new_fixed_memory(record)
-        with _seen(memory.now, request.until):
-            return _computed(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
+        with seen(memory.now, request.until):
+            return computed_of(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
 
-    computed = _with_cells(surface, path)
+    computed = with_cells(surface, path)
     sampler = partial(_by_steps, surface, request, kind, computed.rows)
-    return _trajectory(surface, request, computed, sampler, partial(_contact_states, surface, request))
+    return trajectory_of(surface, request, computed, sampler, partial(_contact_states, surface, request))
 
 
-def _computed(record: PathRecord, memory: Any) -> Computed:
+def computed_of(record: PathRecord, memory: Any) -> Computed:
     lengths, now = record.lengths[0], memory.now[0]
     return Computed(
         rows=record.rows[: lengths["rows"]],
@@ -273,10 +273,11 @@ def _contact_states(surface: SurfaceMotion, request: Request, rows: Rows) -> Row
     """Where contact and centre of mass are at rows of the path, and what acts there."""
     contact = surface.half_thickness
     points = surface.samples(np.column_stack([rows["x"], rows["y"]]), np.ascontiguousarray(rows["time"]))
-    return contact_states(points, request.part, contact, contact + request.centre_height, rows)
+    drags = np.full(len(rows), request.part.drag)
+    return contact_states(points, request.part, contact, contact + request.centre_height, rows, drags)
 
 
-def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:
+def with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:
     """A path over the surface, computed anew whenever it has come to a place where a cell was lacking."""
     while True:
         computed = path(surface.record)
@@ -285,16 +286,18 @@ def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> 
         surface.store.build(computed.missing)
 
 
-def _trajectory(
+def trajectory_of(
     surface: SurfaceMotion,
     request: Request,
     computed: Computed,
     sampler: Callable[[FloatArray], Rows],
     contact: Callable[[Rows], Rows],
     face: Face | None = None,
+    film: bool = False,
 ) -> Trajectory:
+    """What a kernel has made of a request, for people; film: whether a film of air bears load."""
     rows = computed.rows
-    samples = samples_of(rows, face is not None)
+    samples = samples_of(rows, face is not None, film)
     if computed.verdict == Verdict.GOES_ON:
         outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:

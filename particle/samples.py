@@ -32,8 +32,10 @@ FACE_COLUMNS: Final = {
     "heading": ("rad", "heading of the part, counter-clockwise from the plate's x"),
     "spin": ("rad/s", "rate of the heading"),
     "pressure_margin": ("1", "least pressure on the face over the mean; below 0 an edge lifts"),
+    "gap": ("m", "mean gap under the part"),
+    "air_force": ("N", "force of the film of air, a share of the normal force"),
 }
-"""Further columns of a part with a face."""
+"""Further columns of a part with a face, and of one on a film of air."""
 EVENTS: Final = {"event_time": "s", "event_x": "m", "event_y": "m", "event_speed": "m/s", "event_load": "N"}
 STATES: Final = ("stick", "slip", "flight")
 """The states by their number."""
@@ -65,6 +67,8 @@ class Samples(NamedTuple):
     heading: FloatArray | None = None  # (k,) rad, of a part with a face, as are these
     spin: FloatArray | None = None  # (k,) rad/s
     pressure_margin: FloatArray | None = None  # (k,) the least pressure on the face over the mean
+    gap: FloatArray | None = None  # (k,) m, the mean under a part on a film of air
+    air_force: FloatArray | None = None  # (k,) N, of the film, a share of the normal force
 
     def chosen(self, rows: Any) -> Samples:
         """Those of `rows`, an index or mask of numpy."""
@@ -105,8 +109,8 @@ class ContactSamples(NamedTuple):
     bend_loss: FloatArray  # (k,) N, by how much the surface's curvature lessens the pull-off force (`LocalContact`)
 
 
-def samples_of(rows: NDArray[Any], face: bool = False) -> Samples:
-    """The rows (k,) of a record, for people; face: of a part that has one."""
+def samples_of(rows: NDArray[Any], face: bool = False, film: bool = False) -> Samples:
+    """The rows (k,) of a record, for people; face: of a part that has one; film: of a part on a film of air."""
     return Samples(
         time=rows["time"],
         position=np.column_stack([rows["x"], rows["y"]]),
@@ -119,6 +123,8 @@ def samples_of(rows: NDArray[Any], face: bool = False) -> Samples:
         heading=rows["heading"] if face else None,
         spin=rows["spin"] if face else None,
         pressure_margin=rows["pressure"] if face else None,
+        gap=rows["gap"] if film else None,
+        air_force=rows["air"] if film else None,
     )
 
 
@@ -137,7 +143,8 @@ def contact_samples_of(rows: NDArray[Any], states: NDArray[Any], friction: Rough
     touching = rows["mode"] != Mode.FLYING
     if friction is not None and touching.any():
         # The end of contact is located just beyond it, where the law has no separation.
-        separation = friction.separation(np.clip(load[touching], -friction.pull_off, friction.largest_load))
+        borne = (load - rows["air"])[touching]
+        separation = friction.separation(np.clip(borne, -friction.pull_off, friction.largest_load))
         parts[:, touching] = separation, *friction.forces(separation)[:2]
     pull, of_point, added = (states[name] for name in ("pull", "point_pull", "added_pull"))
     separations, contact_loads, adhesions = parts

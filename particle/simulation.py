@@ -12,9 +12,11 @@ import numpy as np
 from particle.body import Body, Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
+from particle.film import Film, find_film_path, unscaled
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.footprint import Footprint
 from particle.friction import LOCAL, Contact, FrictionLaw, ScaledFriction
+from particle.friction.local import LocalContact
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
@@ -69,6 +71,7 @@ def simulate(
     after_detachment: str = "stop",
     time_step: float | None = None,
     after_tipping: str = "stop",
+    film: Film | None = None,
 ) -> Trajectory:
     """Follow one part over the moving surface, by the equations of motion (3.1) to (3.4) in docs/motion.md.
 
@@ -97,6 +100,9 @@ def simulate(
         stroke.
     after_tipping : str
         `"stop"` ends the run where an edge of a Body lifts; `"ignore"` takes it to stay flat, whatever it says of that.
+    film : Film, optional
+        The film of air under a Micropart, which bears load and brakes its slip, in place of the part's own drag
+        (scheme `"events"` only). Laws without a separation then have the gap of `KogutEtsion()`.
 
     Returns
     -------
@@ -136,7 +142,11 @@ def simulate(
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
     if scheme == "events":
-        found = find_path(surface, request, tolerance, stop_flag(), face_of(part, tolerance, after_tipping == "stop"))
+        if film is None:
+            face = face_of(part, tolerance, after_tipping == "stop")
+            found = find_path(surface, request, tolerance, stop_flag(), face)
+        else:
+            found = find_film_path(surface, request, film, friction, stop_flag())
         if found is None:
             raise Stopped
         return found
@@ -188,6 +198,16 @@ def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "
     if after_tipping != "stop":
         wrong.append(f"Input after_tipping of simulate must be 'stop' with a LocalContact; got {after_tipping!r}")
     return wrong
+
+
+def film_faults(film: Film, part: Micropart | Body, friction: Contact) -> list[str]:
+    """What is wrong with a film of air under a part."""
+    if isinstance(part, Body):
+        return ["Input film of simulate must be None with a Body"]
+    contact = unscaled(friction)[0]
+    if isinstance(contact, LocalContact) and contact.size != film.size:
+        return [f"Input size of Film must be that of the LocalContact, {contact.size!r} m; got {film.size!r}"]
+    return []
 
 
 def _least_gap(surface: SurfaceMotion, part: Body) -> float:

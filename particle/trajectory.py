@@ -57,6 +57,22 @@ class Energy:
         return float(np.abs(gap).max()) / max(largest, MIN_ENERGY * self.scale)
 
 
+@dataclass(frozen=True, eq=False)
+class FilmEnergy:
+    """The energy ledger of a film of air at the rows of a trajectory: what it stores grows by work - heat."""
+
+    stored: FloatArray = field(repr=False)  # (n,) J, p_a/2 int h (p/p_a - 1)^2 dA
+    work: FloatArray = field(repr=False)  # (n,) J, of the gap on the air since the start
+    heat: FloatArray = field(repr=False)  # (n,) J, what the air lost by its flow since the start
+
+    @property
+    def balance(self) -> float:
+        """The largest gap in the ledger, relative to the largest of its entries."""
+        gap = self.stored - self.stored[0] - (self.work - self.heat)
+        largest = max(float(np.abs(entry).max()) for entry in (self.stored, self.work, self.heat))
+        return float(np.abs(gap).max()) / largest if largest > 0 else 0.0
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """The path of a part: a row at every event and every step of the integrator.
@@ -81,6 +97,9 @@ class Trajectory:
     heading: FloatArray | None = None  # (n,) rad, of a part with a face, as are these
     spin: FloatArray | None = None  # (n,) rad/s
     pressure_margin: FloatArray | None = None  # (n,) the least pressure over the mean; below 0 an edge lifts
+    gap: FloatArray | None = None  # (n,) m, the mean under a part on a film of air, as are these
+    air_force: FloatArray | None = None  # (n,) N, of the film, a share of the normal force
+    film_energy: FilmEnergy | None = field(default=None, repr=False)
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
@@ -140,7 +159,7 @@ class Trajectory:
         ValueError
             A time is nan.
         """
-        return samples_of(self._rows_at(times, "at"), self.heading is not None)
+        return samples_of(self._rows_at(times, "at"), self.heading is not None, self.gap is not None)
 
     def contact_at(self, times: ArrayLike, friction: RoughContact | None = None) -> ContactSamples:
         """Contact and centre of mass in space at times, and the forces on the part there.
@@ -178,7 +197,7 @@ class Trajectory:
         dataset : xarray.Dataset
             Over `time`: x, y, z, vx, vy, vz, normal_force, friction_force and state; over `event`: event_time,
             event_kind, event_x, event_y, event_speed and event_load; of a part with a face also heading, spin and
-            pressure_margin. All have their units as attributes.
+            pressure_margin, of one on a film of air gap and air_force. All have their units as attributes.
 
         Raises
         ------

@@ -20,7 +20,7 @@ linear around a load, so that u follows from a 3 x 3 system, again until the loa
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from particle.body.averages import AT, BY, BY_BY, BY_T, PLACE, ROWS, TT, X_BY, XT, XX, XY, Y_BY, YT, YY, T, X, Y
 from particle.body.face import Face
@@ -71,15 +71,15 @@ class Balance(Press):
 
 
 @device_no_arrays
-def solve(m: FloatArray, out: FloatArray) -> bool:
-    """Solve the system (n, n + 1) by elimination with pivots, in place; False where it is singular."""
+def solve(m: Any, out: Any) -> bool:
+    """Solve the real or complex system (n, n + 1) by elimination with pivots, in place; False where it is singular."""
     n = len(m)
     for k in range(n):
         pivot = k
         for i in range(k + 1, n):
             if abs(m[i, k]) > abs(m[pivot, k]):
                 pivot = i
-        if m[pivot, k] == 0.0 or not math.isfinite(m[pivot, k]):
+        if not 0.0 < abs(m[pivot, k]) < math.inf:
             return False
         if pivot != k:
             for j in range(k, n + 1):

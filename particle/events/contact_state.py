@@ -43,11 +43,12 @@ CONTACT_STATE = record_type(ContactState)
 
 @jit
 def contact_states(
-    points: FloatArray, part: Part, contact: float, centre: float, rows: NDArray[Row]
+    points: FloatArray, part: Part, contact: float, centre: float, rows: NDArray[Row], drags: FloatArray
 ) -> NDArray[ContactState]:
     """The states (k,) at the rows (k,) of a path, over points of the surface (k, 49); nan where these are.
 
-    contact, centre: m, the heights over the mid-plane, also of a part on a surface that stays level.
+    contact, centre: m, the heights over the mid-plane, also of a part on a surface that stays level.  drags: (k,)
+    N s/m, of the air.
     """
     out = np.zeros(len(rows), CONTACT_STATE)
     point = Part(part.mass, part.gravity, part.tilt_x, part.tilt_y, part.squeeze, part.law, 0.0, 0.0)
@@ -71,7 +72,7 @@ def contact_states(
             d_x, d_y = -part.mass * p_x, -part.mass * p_y
         elif p.speed > 0.0:
             k_x, k_y = slip(f, part, v_x, v_y)
-            against = row.friction / p.speed + part.drag
+            against = row.friction / p.speed + drags[k]
             d_x, d_y = -against * k_x, -against * k_y
         else:  # it begins to slide, along the pull
             against = row.friction / state.pull if state.pull > 0.0 else 0.0

@@ -35,6 +35,8 @@ class Row(Record):
     heading: float  # rad, of a part with a face; else these three are 0
     spin: float  # rad/s
     pressure: float  # the least on the face over the mean
+    gap: float  # m, the mean under a part with a film of air; else these two are 0
+    air: float  # N, what the film bears of the load
 
 
 class EventRow(Record):

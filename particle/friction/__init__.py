@@ -9,4 +9,4 @@ from particle.friction.contact import (
     friction_limits,
     friction_slope,
 )
-from particle.friction.grip import Grip, grip, pressures, rule_for, spread_of
+from particle.friction.grip import Grip, grip, pressures, rule_for, spread_of, sums

@@ -61,7 +61,7 @@ def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip
         highest = max(highest, _height(law.places, k, xx, xy, yy))
     # Where N is least.
     low, high, z = 0.0, HIGHEST, law.fold - min(0.1 * spread, 1.0)
-    step, s = math.inf, _sums(law, first, end, z + highest, xx, xy, yy)
+    step, s = math.inf, sums(law, first, end, z + highest, xx, xy, yy)
     for _ in range(TURNS):
         if s.slope < 0.0:
             low = z
@@ -73,14 +73,14 @@ def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip
         if abs(step) < SETTLED:
             break
         z += step
-        s = _sums(law, first, end, z + highest, xx, xy, yy)
+        s = sums(law, first, end, z + highest, xx, xy, yy)
     z, least = z + step, s.net + 0.5 * s.slope * step
     if load > least:
         # The root of the load above the least, nearly linear in z, is taken for an exponential at first.
         wanted, low, high = math.sqrt(load - least), 0.0, z
         z = max(z - math.log1p(GROWTH * wanted * math.sqrt(2.0 / s.bend)) / GROWTH, 0.0)
         for _ in range(TURNS):
-            s = _sums(law, first, end, z + highest, xx, xy, yy)
+            s = sums(law, first, end, z + highest, xx, xy, yy)
             above = math.sqrt(max(s.net - least, 0.0))
             if s.net > load:
                 low = z
@@ -118,7 +118,7 @@ def _height(places: FloatArray, k: int, xx: float, xy: float, yy: float) -> floa
 
 
 @device_no_arrays
-def _sums(law: FrictionLaw, first: int, end: int, top: float, xx: float, xy: float, yy: float) -> Pressures:
+def sums(law: FrictionLaw, first: int, end: int, top: float, xx: float, xy: float, yy: float) -> Pressures:
     """N and Q of a part whose face is `top` roughnesses over the middle, and their derivatives by the gap."""
     net = slope = bend = limit = limit_slope = 0.0
     for k in range(first, end):

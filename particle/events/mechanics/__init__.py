@@ -13,8 +13,10 @@ from particle.events.mechanics.breakaway import (
 )
 from particle.events.mechanics.equations import (
     Part,
+    Pull,
     at_centre,
     at_contact,
+    braked,
     by_centre,
     carried,
     drag,

@@ -40,7 +40,7 @@ from particle.events.mechanics.parallel import (
     unstretched,
 )
 from particle.friction import FrictionLaw, Grip, grip
-from particle.jit import device_no_arrays, inlined
+from particle.jit import device_no_arrays, inlined, spliced
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 
@@ -163,14 +163,20 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     p = pull(f, v_x, v_y, part)
     limit, load = grip_at(f, part, p.normal)
     limit += part.drag * p.speed
-    slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
-    k_x, k_y = slip(f, part, v_x, v_y)
-    q_x, q_y = at_centre(f, part, slow * k_x, slow * k_y)
     rate.x, rate.y = v_x, v_y
-    rate.v_x, rate.v_y = by_centre(f, part, p.x - q_x, p.y - q_y)
-    rate.work = push(f, part, p.normal) - part.mass * drag(f, part, q_x, q_y)
+    slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
+    rate.v_x, rate.v_y, rate.work = braked(f, part, p, slow, v_x, v_y)
     rate.dissipated = limit * p.speed
     return load
+
+
+@spliced
+def braked(f: SurfacePoint, part: Part, p: Pull, slow: float, v_x: float, v_y: float) -> tuple[float, float, float]:
+    """(x'', y'') [m/s^2] under a pull p and friction `slow` [1/s] times the slip, and the surface's power [W]."""
+    k_x, k_y = slip(f, part, v_x, v_y)
+    q_x, q_y = at_centre(f, part, slow * k_x, slow * k_y)
+    a_x, a_y = by_centre(f, part, p.x - q_x, p.y - q_y)
+    return a_x, a_y, push(f, part, p.normal) - part.mass * drag(f, part, q_x, q_y)
 
 
 @device_no_arrays

@@ -1,0 +1,230 @@
+"""One step of part and film, by Radau's collocation (`body.collocation`).
+
+The stages Z of the state's change solve Z = h (A x I) F(Z). Newton's method takes the rate's derivatives J from the
+step's begin. With A^-1 = T L T^-1 its equations fall apart into one for each of A's eigenvalues,
+
+    (L_k/h - J) W_k = (T^-1 R)_k,   R = F - (A^-1/h) Z,   Z -> Z + T W.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from particle.body.balance import solve
+from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A
+from particle.events import Request
+from particle.film.film import Layer
+from particle.film.gap import pumped
+from particle.film.memory import CONTENTS, PUMPED, RATES, SOLVED, STATE, V_X, Memory, X, Y, Z
+from particle.film.state import fill_rate
+from particle.jit import device_no_arrays
+from particle.modes import Mode
+from particle.surface import Surface, within_cell
+from particle.types import FloatArray
+
+PASSES, FOUND = 10, 1e-3  # FOUND: of what a step may be off by, how exactly its stages are found
+RELATIVE = 1e-2  # of the speed as a step begins: how far a rate may be off at most
+CONTENT = 50.0  # tolerances, of a content over the roughness
+NUDGE = 1e-6  # of a speed and a gap, to see how rates change; how they do with the place is left to later passes
+LONGER = 2.0  # steps: how far the last step's rates are extrapolated in full
+FOLD = 0.3, 2.0  # of z, and roughnesses more: how far the gap may change in a step
+
+BACK = np.linalg.inv(A)
+_eigen = np.linalg.eig(BACK)
+_half = np.flatnonzero(_eigen[0].imag >= 0)  # of a pair of conjugates one counts twice
+ROOTS = _eigen[0][_half]
+FROM = np.ascontiguousarray(np.linalg.inv(_eigen[1])[_half])
+TO = np.ascontiguousarray(_eigen[1][:, _half] * np.where(_eigen[0][_half].imag > 0, 2.0, 1.0))
+
+
+@device_no_arrays
+def begin_step(surface: Surface, request: Request, layer: Layer, memory: Memory) -> None:
+    """The rate at the state, and by how much it changes with it, into memory.step[0]."""
+    step, now, first = memory.step[0], memory.now[0], first_of(memory)
+    state, nudged, g = step.state, step.end, memory.gap[0]
+    for i in range(STATE):
+        nudged[i] = state[i]
+    memory.gap[1] = g
+    for j in range(max(first, V_X), SOLVED):
+        size = NUDGE * g.width
+        if j < CONTENTS:
+            size = NUDGE * (g.speed if g.speed > 0.0 else surface.size / request.stroke_time)
+        nudged[j] = state[j] + size
+        fill_rate(request, layer, memory, nudged, now.time, now.mode, memory.gap[1], step.rates[0])
+        nudged[j] = state[j]
+        for i in range(first, SOLVED):
+            step.turns[i, j] = (step.rates[0, i] - step.rate[i]) / size
+
+
+@device_no_arrays
+def first_of(memory: Memory) -> int:
+    """The first number of a state that moves."""
+    return CONTENTS if memory.now[0].mode == Mode.RESTING else X
+
+
+@device_no_arrays
+def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float) -> bool:
+    """Try a step of h [s], after `begin_step`: its stages and its end; False where they are not found."""
+    step, now, first = memory.step[0], memory.now[0], first_of(memory)
+    state, stages, rates, time = step.state, step.stages, step.rates, now.time
+    powers, start = (STAGES if h <= LONGER * step.before else 1), memory.gap[0]
+    for k in range(STAGES):
+        t = NODES[k] * h
+        for i in range(STATE):
+            stages[k, i] = state[i]
+        for i in range(first, SOLVED):
+            guess = 0.0
+            for j in range(powers - 1, -1, -1):
+                guess = guess * t + step.lead[j, i] / (j + 1)
+            stages[k, i] += t * guess
+    before = math.inf
+    small = FOUND * request.tolerance
+    if now.mode == Mode.SLIDING:
+        small = min(small, FOUND * RELATIVE * start.speed * request.stroke_time)
+    for turn in range(PASSES):
+        for k in range(STAGES):
+            if first == X and not within_cell(memory.local, stages[k, X], stages[k, Y]):
+                return False
+            fill_rate(request, layer, memory, stages[k], time + NODES[k] * h, now.mode, memory.gap[k + 1], rates[k])
+            g = memory.gap[k + 1]
+            stages[k, Z] = g.z
+            if not abs(g.z - start.z) < FOLD[0] * abs(start.z) + FOLD[1]:
+                return False
+            if now.mode == Mode.SLIDING and not g.speed > 0.0:
+                return False
+        largest = _newton(surface, request, layer, memory, h, first)
+        if not largest < 1e3 * surface.size:
+            return False
+        if (min(1.0, largest / before) if turn > 0 else 1.0) * largest <= small:
+            break
+        if turn == PASSES - 1 or largest > 2.0 * before:
+            return False
+        before = largest
+    _finish(layer, memory, h, first)
+    return True
+
+
+@device_no_arrays
+def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float, first: int) -> float:
+    """One of Newton's steps of the stages; its largest change as a distance [m]."""
+    step, m, ahead = memory.step[0], memory.system, memory.ahead
+    state, stages, n = step.state, step.stages, SOLVED - first
+    for k in range(STAGES):
+        for i in range(first, SOLVED):
+            step.changes[k, i] = 0.0
+            step.residuals[k, i] = step.rates[k, i]
+            for j in range(STAGES):
+                step.residuals[k, i] -= BACK[k, j] / h * (stages[j, i] - state[i])
+    for root in range(len(ROOTS)):
+        for i in range(n):
+            for j in range(n):
+                m[i, j] = -step.turns[first + i, first + j]
+            m[i, i] += ROOTS[root] / h
+            m[i, n] = 0.0
+            for k in range(STAGES):
+                m[i, n] += FROM[root, k] * step.residuals[k, first + i]
+        if not solve(m[:n, : n + 1], ahead[:n]):
+            return math.inf
+        for k in range(STAGES):
+            for i in range(n):
+                step.changes[k, first + i] += (TO[k, root] * ahead[i]).real
+    largest = 0.0
+    for k in range(STAGES):
+        for i in range(first, SOLVED):
+            stages[k, i] += step.changes[k, i]
+            largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, layer, i))
+    return largest
+
+
+@device_no_arrays
+def _unit(surface: Surface, request: Request, layer: Layer, i: int) -> float:
+    """What an error of a number of the state counts as a distance [m] over it.
+
+    A velocity counts as what it moves the part by in the shortest stroke, a roughness of gap as a 50th of the surface's
+    size.
+    """
+    if i >= CONTENTS:
+        return surface.size / (CONTENT * layer.law.roughness)
+    return request.stroke_time if i >= V_X else 1.0
+
+
+@device_no_arrays
+def _finish(layer: Layer, memory: Memory, h: float, first: int) -> None:
+    """The end of a step whose stages are found, both ledgers included, and its rate as a polynomial."""
+    step, start = memory.step[0], memory.gap[0]
+    state, stages, end, last = step.state, step.stages, step.end, STAGES - 1
+    for i in range(STATE):
+        end[i] = stages[last, i]
+    for i in range(SOLVED, RATES):
+        end[i] = state[i]
+        for j in range(STAGES):
+            end[i] += h * A[last, j] * step.rates[j, i]
+    for k in range(STAGES):
+        for i in range(first, SOLVED):
+            step.rates[k, i] = 0.0
+            for j in range(STAGES):
+                step.rates[k, i] += BACK[k, j] / h * (stages[j, i] - state[i])
+    end[PUMPED] = state[PUMPED]
+    for k in range(STAGES):
+        z = xx = xy = yy = 0.0
+        for j in range(STAGES):
+            g = memory.gap[j + 1]
+            z += BACK[k, j] / h * (g.z - start.z)
+            xx += BACK[k, j] / h * (g.xx - start.xx)
+            xy += BACK[k, j] / h * (g.xy - start.xy)
+            yy += BACK[k, j] / h * (g.yy - start.yy)
+        end[PUMPED] += h * A[last, k] * pumped(layer, z, xx, xy, yy, memory.gap[k + 1])
+    for k in range(STAGES):
+        for i in range(first, SOLVED):
+            step.past[k, i] = 0.0
+            for j in range(STAGES):
+                step.past[k, i] += AHEAD[k, j] * step.rates[j, i]
+
+
+@device_no_arrays
+def error_of(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float) -> float:
+    """The error of the step tried as a distance [m]."""
+    step, first = memory.step[0], first_of(memory)
+    m, n = step.system, SOLVED - first
+    for i in range(n):
+        m[i, n] = AT_START * step.rate[first + i]
+        for k in range(STAGES):
+            m[i, n] += DIFFERENCE[k] * step.rates[k, first + i]
+        m[i, n] *= h
+        for j in range(n):
+            m[i, j] = (1.0 if i == j else 0.0) - h * AT_START * step.turns[first + i, first + j]
+    if not solve(m[:n, : n + 1], step.off[:n]):
+        return math.inf
+    total = 0.0
+    for i in range(n):
+        total += (step.off[i] * _unit(surface, request, layer, first + i)) ** 2
+    return math.sqrt(total)
+
+
+@device_no_arrays
+def fill_within(memory: Memory, share: float, h: float, out: FloatArray) -> None:
+    """The state a share of the last step of h [s] after its begin into `out`, ledgers excluded."""
+    step, first = memory.step[0], first_of(memory)
+    for i in range(STATE):
+        out[i] = step.end[i]
+    for i in range(first, SOLVED):
+        total = 0.0
+        for k in range(STAGES - 1, -1, -1):
+            total = total * (share - 1.0) + step.past[k, i] / (k + 1)
+        out[i] += h * (share - 1.0) * total
+
+
+@device_no_arrays
+def take_step(memory: Memory, h: float) -> None:
+    """Make the end of a step of h [s] the state, and its rate the guess for the next."""
+    step, first = memory.step[0], first_of(memory)
+    for i in range(STATE):
+        step.state[i] = step.end[i]
+    for i in range(first, SOLVED):
+        power = 1.0
+        for k in range(STAGES):
+            step.lead[k, i] = step.past[k, i] / power
+            power *= h
+    step.before = h
