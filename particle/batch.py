@@ -13,11 +13,9 @@ import numpy as np
 
 from particle.body import Body
 from particle.drives import AnyDrive
-from particle.film import Film, find_film_path
 from particle.friction import Contact
 from particle.interrupt import wait
-from particle.path import find_path
-from particle.simulation import Micropart, face_of, faults, film_faults, is_law, law_faults, new_request, part_faults
+from particle.simulation import Micropart, faults, is_law, law_faults, new_request, part_faults, path_of
 from particle.surface import SurfaceMotion
 from particle.trajectory import Trajectory
 
@@ -44,7 +42,6 @@ def simulate_many(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     after_tipping: str = "stop",
-    film: Film | None = None,
 ) -> list[Trajectory]:
     """Follow many parts by located events, with the same bits as from `simulate` for any number of threads.
 
@@ -94,8 +91,6 @@ def simulate_many(
     ]
     if after_detachment == "fly" and any(isinstance(part, Body) for part in parts):
         wrong.append("Input after_detachment of simulate_many must be 'stop' with a Body; got 'fly'")
-    if film is not None:
-        wrong += [fault for part, law in zip(parts, frictions, strict=False) for fault in film_faults(film, part, law)]
     if wrong:
         raise ValueError("; ".join(wrong))
     found: list[Trajectory | None] = [None] * len(parts)
@@ -104,10 +99,7 @@ def simulate_many(
     def path(k: int) -> None:
         driven = surface if drives is None else surface.driven_by(drives[k])
         request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
-        if film is not None:
-            found[k] = find_film_path(driven, request, film, frictions[k], stop)
-            return
-        found[k] = find_path(driven, request, tolerance, stop, face_of(parts[k], tolerance, after_tipping == "stop"))
+        found[k] = path_of(driven, parts[k], frictions[k], request, tolerance, after_tipping, stop)
 
     pool, handed_out = ThreadPoolExecutor(threads or processors()), []
     try:

@@ -12,17 +12,16 @@ import numpy as np
 from particle.body import Body, Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
-from particle.film import Film, find_film_path, unscaled
+from particle.film import Film, find_film_path
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.footprint import Footprint
 from particle.friction import LOCAL, Contact, FrictionLaw, ScaledFriction
-from particle.friction.local import LocalContact
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
-from particle.types import FloatArray
+from particle.types import FloatArray, IntArray
 
 BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where breakpoints are bridged
 
@@ -45,6 +44,7 @@ class Micropart:
     squeeze: float = 0.0  # N, a constant force that presses it onto the surface, along the normal
     centre_height: float = 0.0  # m, of its centre of mass over the surface that it lies on
     drag: float = 0.0  # N s/m, of the air under it: a force against its slip (`Air.drag`)
+    film: Film | None = None  # of air under it, which bears load and has a drag of its own, in place of `drag`
 
     def __post_init__(self) -> None:
         pairs = {name: getattr(self, name) for name in ("position", "velocity")}
@@ -55,6 +55,7 @@ class Micropart:
                 (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
                 (not_negative(self.centre_height), "centre_height", "0 or a positive length in m", self.centre_height),
                 (not_negative(self.drag), "drag", "0 or a positive drag in N s/m", self.drag),
+                (self.film is None or isinstance(self.film, Film), "film", "a Film or None", self.film),
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
             ],
         )
@@ -71,7 +72,6 @@ def simulate(
     after_detachment: str = "stop",
     time_step: float | None = None,
     after_tipping: str = "stop",
-    film: Film | None = None,
 ) -> Trajectory:
     """Follow one part over the moving surface, by the equations of motion (3.1) to (3.4) in docs/motion.md.
 
@@ -100,9 +100,6 @@ def simulate(
         stroke.
     after_tipping : str
         `"stop"` ends the run where an edge of a Body lifts; `"ignore"` takes it to stay flat, whatever it says of that.
-    film : Film, optional
-        The film of air under a Micropart, which bears load and brakes its slip, in place of the part's own drag
-        (scheme `"events"` only). Laws without a separation then have the gap of `KogutEtsion()`.
 
     Returns
     -------
@@ -136,23 +133,36 @@ def simulate(
         wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
-    elif scheme != "events" and isinstance(part, Micropart) and part.drag:
-        wrong.append(f"Input drag of Micropart must be 0 with the scheme {scheme!r}; got {part.drag!r}")
+    elif scheme != "events" and isinstance(part, Micropart) and (part.drag or part.film):
+        wrong.append(
+            f"Input {'film' if part.film else 'drag'} of Micropart must be left out with the scheme {scheme!r}"
+        )
     if wrong:
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
     if scheme == "events":
-        if film is None:
-            face = face_of(part, tolerance, after_tipping == "stop")
-            found = find_path(surface, request, tolerance, stop_flag(), face)
-        else:
-            found = find_film_path(surface, request, film, friction, stop_flag())
+        found = path_of(surface, part, friction, request, tolerance, after_tipping, stop_flag())
         if found is None:
             raise Stopped
         return found
     step = float(default_step(surface, duration) if time_step is None else time_step)
     steps = step_count(request.duration, step)
     return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MAX_ROWS))
+
+
+def path_of(
+    surface: SurfaceMotion,
+    part: Micropart | Body,
+    friction: Contact,
+    request: Request,
+    tolerance: float,
+    after_tipping: str,
+    stop: IntArray,
+) -> Trajectory | None:
+    """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1."""
+    if isinstance(part, Micropart) and part.film is not None:
+        return find_film_path(surface, request, part.film, friction, stop)
+    return find_path(surface, request, tolerance, stop, face_of(part, tolerance, after_tipping == "stop"))
 
 
 def face_of(part: Micropart | Body, tolerance: float, tips: bool = True) -> Face | None:
@@ -187,6 +197,8 @@ def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "
     while isinstance(friction, ScaledFriction):
         friction = friction.contact
     size = getattr(friction, "size", None)
+    if isinstance(part, Micropart) and part.film and not isinstance(size, Footprint) and size != part.film.size:
+        return [f"Input size of Film must be that of the LocalContact, {size!r} m; got {part.film.size!r}"]
     if not isinstance(part, Body):
         square = "Input size of LocalContact must be the side of a square, in m, with a Micropart"
         return [square] if isinstance(size, Footprint) else []
@@ -198,16 +210,6 @@ def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "
     if after_tipping != "stop":
         wrong.append(f"Input after_tipping of simulate must be 'stop' with a LocalContact; got {after_tipping!r}")
     return wrong
-
-
-def film_faults(film: Film, part: Micropart | Body, friction: Contact) -> list[str]:
-    """What is wrong with a film of air under a part."""
-    if isinstance(part, Body):
-        return ["Input film of simulate must be None with a Body"]
-    contact = unscaled(friction)[0]
-    if isinstance(contact, LocalContact) and contact.size != film.size:
-        return [f"Input size of Film must be that of the LocalContact, {contact.size!r} m; got {film.size!r}"]
-    return []
 
 
 def _least_gap(surface: SurfaceMotion, part: Body) -> float:

@@ -81,7 +81,9 @@ def _parameter(case: Case, kind: str, path: str, bounds: Sequence[Any] | None) -
     try:
         field = find_field(case, None, path)
         if field.locations[0][0] not in FREE:
-            raise ValueError(f"must be fields of [part], [friction] or [air], which leave the surface as it is; got {path}")
+            raise ValueError(
+                f"must be fields of [part], [friction] or [air], which leave the surface as it is; got {path}"
+            )
         if field.kind != "number":
             raise ValueError(f"must be numbers; got {path}, a {field.kind}")
         name = f"bounds of {path}"

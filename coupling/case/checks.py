@@ -87,11 +87,13 @@ def _parts(tables: CaseTables) -> dict[Location, PartCase]:
 def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
     """Yield what does not go with parts of which some have a footprint, or none has one, or with a local contact."""
     run, friction, where = tables.run, tables.friction, "[[parts]]" if tables.parts else "[part]"
-    for place in (place for place, part in parts.items() if part.local_contact):
-        if not isinstance(friction, KogutEtsionCase):
+    film = tables.air is not None and tables.air.film
+    for place, part in parts.items():
+        if part.local_contact and not isinstance(friction, KogutEtsionCase):
             yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
-        elif parts[place].size is not None and "contact_area" in stated(friction):
-            yield ("friction", "contact_area"), f"must not be given with local_contact and size in {where}"
+        elif (part.local_contact or film) and part.size is not None and "contact_area" in stated(friction):
+            by = "local_contact" if part.local_contact else "a film of air"
+            yield ("friction", "contact_area"), f"must not be given with {by} and size in {where}"
     if run.after_tipping == "ignore" and any(part.local_contact and part.face for part in parts.values()):
         yield ("run", "after_tipping"), f'must be "stop" with local_contact = true in {where}; got "ignore"'
     if run.scheme == "paper" and any(part.local_contact for part in parts.values()):

@@ -110,5 +110,5 @@ def test_a_face_under_drag_alone_slows_and_spins_down_by_the_closed_form() -> No
 
 def test_a_drag_is_refused_with_fixed_steps() -> None:
     part = Micropart(MASS, (0.0, 0.0), drag=1e-6)
-    with pytest.raises(ValueError, match="Input drag of Micropart must be 0 with the scheme 'fixed'; got 1e-06"):
+    with pytest.raises(ValueError, match="Input drag of Micropart must be left out with the scheme 'fixed'"):
         simulate(platform_surface(size=1e-3), part, CoulombAdhesion(0.1), 0.1, scheme="fixed")
