@@ -136,6 +136,9 @@ def simulate(
         wrong.append("Input friction of simulate must not be a LocalContact with the scheme 'paper'")
     if isinstance(part, Body):
         wrong += _face_faults(scheme, after_detachment)
+    if film is not None:
+        wrong += film_faults(film, part, friction)
+        wrong += [f"Input scheme of simulate must be 'events' with a Film; got {scheme!r}"] * (scheme != "events")
     elif scheme != "events" and isinstance(part, Micropart) and part.drag:
         wrong.append(f"Input drag of Micropart must be 0 with the scheme {scheme!r}; got {part.drag!r}")
     if wrong:

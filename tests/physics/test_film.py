@@ -171,13 +171,21 @@ def test_a_part_comes_off_where_air_is_too_thin_to_hold_it():
     path = simulate(surface, PART, TABLE_1, 3e-3, film=thin)
     assert path.outcome is free.outcome is Outcome.DETACHED
     assert path.time[-1] == pytest.approx(free.time[-1], abs=1e-3 * STROKE)
-    flown = simulate(surface, PART, TABLE_1, 3e-3, film=Film(Air(pressure=3e4, bow=1e-6), SIZE), after_detachment="fly")
-    kinds = [event.kind for event in flown.events]
-    assert kinds[:2] == [EventKind.DETACHES, EventKind.LANDS]
-    assert flown.outcome in (Outcome.STUCK, Outcome.MOVING)
-    assert flown.film_energy.balance < 1e-6
-    at = simulate(strokes(0.0), Micropart(MASS, (0.0, 0.0)), TABLE_1, 1e-3, gravity=(0, 0, 2e3), film=FILM)
+    at = simulate(strokes(0.0), PART, TABLE_1, 1e-3, gravity=(0, 0, 2e3), film=FILM)
     assert (at.outcome, at.time[-1]) == (Outcome.DETACHED, 0.0)
+
+
+def test_a_part_is_followed_off_the_surface_as_far_as_a_film_holds_it():
+    surface = strokes(3 * 3.716020e-6)
+    path = simulate(surface, PART, TABLE_1, 1e-3, film=Film(Air(pressure=3e4), SIZE), after_detachment="fly")
+    assert [event.kind for event in path.events] == [EventKind.DETACHES, EventKind.LANDS]
+    assert path.outcome is Outcome.STUCK
+    assert 2e-7 < path.gap.max() < 2e-6
+    assert set(path.state) == {State.STICK, State.FLIGHT}
+    assert path.film_energy.balance < 1e-6
+    lost = simulate(surface, PART, TABLE_1, 1e-3, film=Film(Air(pressure=1e4), SIZE), after_detachment="fly")
+    assert lost.outcome is Outcome.DETACHED
+    assert [event.kind for event in lost.events] == [EventKind.DETACHES, EventKind.DETACHES]
 
 
 def test_what_does_not_go_with_a_film_is_refused():
@@ -188,7 +196,7 @@ def test_what_does_not_go_with_a_film_is_refused():
         simulate_many(plate(), [PART], LOCAL, 1e-3, film=Film(Air(), 5e-5))
     with pytest.raises(ValueError, match="scheme of simulate must be 'events' with a Film"):
         simulate(plate(), PART, COULOMB, 1e-3, scheme="fixed", film=FILM)
-    with pytest.raises(ValueError, match="air must be an Air of a positive pressure"):
+    with pytest.raises(ValueError, match="air of Film must be an Air of a positive pressure"):
         Film(Air(pressure=0.0), SIZE)
     with pytest.raises(ValueError, match="without jumps of velocity under a Film; got one at 0.001 s"):
         simulate(platform_surface(z=steady(1e-3, 1e-3), size=1e-6), PART, ConstantFriction(1e-8), 2e-3, film=FILM)
