@@ -32,7 +32,7 @@ from particle.types import FloatArray
 TURNS, SETTLED = 100, 1e-6  # Newton's steps, and roughnesses: the next would be the square of that
 TRUST = 3e-5  # roughnesses, over which the asperities' load is a parabola
 LEAST = 0.05  # roughnesses, of the gap at the nearest point
-FARTHEST = 1e7  # roughnesses
+FARTHEST = 100.0  # roughnesses at the nearest point: where a film holds nothing, and the part's own inertia counts
 WALK = 0.05, 9.0  # roughnesses: steps in which the gap at rest is looked for, and over the nearest point, to where
 THIN = 1e-6  # of the pressure around, the least in a flow
 
@@ -96,7 +96,7 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
         if z == lowest and above <= 0.0:
             g.verdict, step = Verdict.OVERLOADED, 0.0
             break
-        if z > FARTHEST:
+        if above > 0.0 and z - over > FARTHEST:
             g.verdict, step = Verdict.DETACHED, 0.0
             break
         step = -above / slope if slope < 0.0 else math.inf
@@ -114,6 +114,8 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     g.z, g.near = z + step, z + step - over
     g.load, g.air = net + step * net_slope, g.air + step * g.slope
     g.slope += net_slope
+    if g.near > FARTHEST:
+        g.verdict = Verdict.DETACHED
     g.width = layer.offset + g.z * layer.law.roughness - layer.half * layer.half * (g.xx + g.yy) / 6
     g.limit = g.borne + (off + step) * g.borne_slope if layer.grips else friction_limit(law, g.load)
 

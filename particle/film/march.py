@@ -29,7 +29,7 @@ from particle.film.film import Layer
 from particle.film.gap import Gap, fill_gap_at_rest, stored
 from particle.film.memory import CONTENTS, HEAT, LOSS, PUMPED, SOLVED, STATE, STORED, V_X, V_Y, WORK, Memory, X, Y, Z
 from particle.film.state import drag_of, energy_now, fill_rate, fill_row, is_off, leaves, settle
-from particle.film.step import LONGER, attempt, begin_step, error_of, fill_within, take_step
+from particle.film.step import FOLD, LONGER, attempt, begin_step, error_of, fill_within, take_step
 from particle.jit import device, device_no_arrays, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface, allow_bridges, enter, gap_at, surface_at
@@ -39,6 +39,7 @@ FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its accelera
 CLOSE = 1e-9  # of the limit: how close a slip that was located begins to it
 BEFORE_STOP = 0.85  # of the time to a stop: the longest step
 STOPPED = 2e-5, 1e-2  # of a stroke, of the tolerance: how close a stop's time and place must be
+ACROSS = 1e-6  # of a stroke: the most over which a film stays as it is where the gap jumps
 LOOKS = 6  # moments of a step at rest that are looked at
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-12
 EVALUATIONS_PER_SPAN, MIN_EVALUATIONS = 50_000, 500_000
@@ -277,11 +278,14 @@ def _cross_fold(surface: Surface, request: Request, layer: Layer, memory: Memory
     """Where the gap jumps, as the film is softer than the asperities pull: the part is beyond it; else work ends."""
     now: Now = memory.now[0]
     state, g, before = memory.step[0].state, memory.gap[STAGES], memory.gap[0].z
+    settle(request, layer, memory, state, now.time + now.h, g)
+    while abs(g.z - before) < FOLD[1]:
+        now.h *= 4.0
+        if now.h > ACROSS * request.stroke_time:
+            now.verdict = Verdict.WORK_LIMIT
+            return NO_EVENT
+        settle(request, layer, memory, state, now.time + now.h, g)
     now.time += now.h
-    settle(request, layer, memory, state, now.time, g)
-    if abs(g.z - before) < 0.1:
-        now.verdict = Verdict.WORK_LIMIT
-        return NO_EVENT
     state[Z] = g.z
     state[PUMPED] += stored(layer, g) - state[STORED]
     now.h, memory.step[0].before = 1e-4 * request.stroke_time, 0.0
@@ -321,7 +325,7 @@ def _event(surface: Surface, request: Request, memory: Memory, g: Gap) -> int:
     elif g.verdict != Verdict.GOES_ON:
         now.verdict = g.verdict
     elif now.mode == Mode.FLYING:
-        now.mode = Mode.SLIDING
+        now.mode = Mode.SLIDING if g.speed > 0.0 else Mode.RESTING
         return EventKind.LANDS.value
     elif is_off(g) and request.flies:
         now.mode = Mode.FLYING
