@@ -24,6 +24,7 @@ from particle import (
     Micropart,
     SurfaceMotion,
     Trajectory,
+    assumed_contact,
 )
 from particle.friction import Contact
 
@@ -81,16 +82,9 @@ def footprint_of(case: Case) -> Footprint | None:
 
 
 def rough_under(case: Case, footprint: Footprint) -> KogutEtsion:
-    """The rough contact whose separation is the gap under the part: that of the case, or an assumed one.
-
-    Friction laws that state no separation are taken to be of the surfaces of the paper's Table 1.
-    """
-    law = friction_of(case)
-    if not isinstance(law, KogutEtsionCase):
-        return KogutEtsion(contact_area=footprint.area)
-    rough = friction_law(law)
-    assert isinstance(rough, KogutEtsion)
-    return rough
+    """The rough contact whose separation is the gap under the part: that of the case, or an assumed one."""
+    law = friction_law(friction_of(case))
+    return law if isinstance(law, KogutEtsion) else assumed_contact(law, footprint.area)
 
 
 @lru_cache(maxsize=256)

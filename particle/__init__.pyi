@@ -9,7 +9,7 @@ from .friction.face import FaceLaw as FaceLaw
 from .friction.local import LocalContact as LocalContact
 from .friction.table import FrictionTable as FrictionTable
 from .body.body import Body as Body
-from .film import Film as Film
+from .film import Film as Film, assumed_contact as assumed_contact
 from .footprint import Footprint as Footprint
 from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind, Outcome as Outcome, State as State

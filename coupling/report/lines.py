@@ -258,7 +258,8 @@ def _air(air: AirFigures) -> Iterator[str]:
     drags = ", left out" if air.included == "nothing" else ""
     yield f"escapes from {quantity(air.escape_speed, 'm/s')}{settles}; drag rate {air.drag_rate:.3g} per second{drags}"
     if air.film_balance is not None:
-        yield f"a film carries part of the load; its energy ledger closes to {air.film_balance:.1e} of its largest entry"
+        ledger = f"its energy ledger closes to {air.film_balance:.1e} of its largest entry"
+        yield f"a film carries part of the load; {ledger}"
 
 
 def _model(s: PlateSummary) -> list[tuple[str, str]]:

@@ -18,6 +18,8 @@ from particle.types import FloatArray
 
 FUNCTIONS: Final = 5  # of the pressure
 SIDE_POINTS = 8  # of the rule for the flow
+LEAST_SHARE = 1e-3  # of a face on which the assumed contact stands
+PER_AREA = 371.6019695430806  # Pa, the pull-off force of `KogutEtsion()`, which takes .4 s to find
 
 
 class Layer(NamedTuple):
@@ -65,10 +67,11 @@ class Film:
         )
 
     def layer(self, friction: Contact) -> Layer:
-        """Its numbers for kernels, with the asperities of a law; those of `KogutEtsion()` where it has none."""
+        """Its numbers for kernels, with the asperities of a law, or `assumed_contact`."""
         contact, factor = unscaled(friction)
         local = contact if isinstance(contact, LocalContact) else None
         own = local.contact if local else contact if isinstance(contact, KogutEtsion) else KogutEtsion()
+        share = 1.0 if isinstance(contact, (LocalContact, KogutEtsion)) else share_of(contact, self.size**2)
         rough = isinstance(contact, (LocalContact, KogutEtsion))
         law = (local or _square(own, self.size)).law
         air, half = self.air, self.size / 2
@@ -78,7 +81,7 @@ class Film:
         fine, fine_weights = _half_square(2 * SIDE_POINTS)
         exact, bends = _functions(fine)[0], np.column_stack([np.ones(len(fine)), _heights(half * fine)])
         return Layer(
-            law=law._replace(per_area=law.per_area * np.repeat([1.0, factor], 4)),
+            law=law._replace(per_area=law.per_area * np.repeat([share, factor], 4)),
             bends=local is not None or not rough,
             grips=rough,
             closed=own.branch[0],
@@ -95,6 +98,19 @@ class Film:
             means=np.einsum("k,km,ki->mi", fine_weights, bends, exact),
             products=np.einsum("k,km,ki,kj->mij", fine_weights, bends, exact, exact),
         )
+
+
+def assumed_contact(friction: Contact, area: float) -> KogutEtsion:
+    """The rough contact of a face [m^2] under a law that states no separation: `KogutEtsion()`, on as much of the face
+    as has the law's pull-off force.
+    """
+    return KogutEtsion(contact_area=share_of(friction, area) * area)
+
+
+def share_of(friction: Contact, area: float) -> float:
+    """A law's pull-off force over that of `KogutEtsion()` on a face [m^2]; 1 where it is 0 or infinite."""
+    pull_off = friction.pull_off
+    return max(pull_off / (PER_AREA * area), LEAST_SHARE) if 0 < pull_off < math.inf else 1.0
 
 
 def unscaled(friction: Contact) -> tuple[Any, float]:
