@@ -61,7 +61,7 @@ class PartAtRest:
     def _signals(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What holds the part over what friction gives (n,), and the margin of contact (n,), at times (n,) [s]."""
         if self.face is not None:
-            memory = self._memory(np.array([self.pose[:2]]), float(times[0]))
+            memory = self.memory(np.array([self.pose[:2]]), float(times[0]))
             found = rest_margins(self.surface.record, self.part, self.face, memory, *self.pose, times)
             return found[:, 0], found[:, 1]
         loads, pulls = np.empty(len(times)), np.empty(len(times))
@@ -83,10 +83,10 @@ class PartAtRest:
         In numbers of `particle.body.rest_responses`, by factors of all the drives' frequencies.
         """
         assert self.face is not None
-        memory = self._memory(places, float(times[0]))
+        memory = self.memory(places, float(times[0]))
         return rest_responses(self.surface.record, self.part, self.face, memory, places, self.pose[2], times)
 
-    def _memory(self, places: FloatArray, time: float) -> BodyMemory:
+    def memory(self, places: FloatArray, time: float) -> BodyMemory:
         """Scratch memory for the face, once the cells are built that it lies on at places (n, 2) [m]."""
         assert self.face is not None
         cosine, sine = math.cos(self.pose[2]), math.sin(self.pose[2])

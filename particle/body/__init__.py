@@ -6,5 +6,6 @@ from particle.body.contact import face_states
 from particle.body.face import Face
 from particle.body.limit import Search
 from particle.body.march import march_body
-from particle.body.memory import Memory as BodyMemory, new_memory as new_body_memory
+from particle.body.memory import Memory as BodyMemory
+from particle.body.memory import new_memory as new_body_memory
 from particle.body.rest import quick_gauge, rest_margins, rest_responses

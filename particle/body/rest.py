@@ -100,7 +100,7 @@ def rest_margins(
 def rest_responses(
     surface: Surface, part: Part, face: Face, memory: Memory, places: FloatArray, heading: float, times: FloatArray
 ) -> FloatArray:
-    """What a part at rest must bear under drives sqrt(q) times as fast: (k, n, 12), at places (n, 2) [m], times (k,) [s].
+    """What a part at rest bears under drives sqrt(q) times as fast: (k, n, 12), at places (n, 2) [m], times (k,) [s].
 
     a and b of the load a + b q [N], of its moments M_1 and M_2 likewise [N m], then c and d of the wrench W = c + d q.
     Rates of the surface and the base grow by sqrt(q), second rates by q; pose and gravity stay.

@@ -25,7 +25,7 @@ import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.feasibility.counting import SHARES, SIDE, count_slips, find_held, find_states
-from active_surface.studies.feasibility.places import Place, Squares, resting_of, responses_of, squares_within
+from active_surface.studies.feasibility.places import Place, Squares, responses_of, resting_of, squares_within
 from meshes import Outline
 from particle import Body, Micropart, PartAtRest, SurfaceMotion, part_at_rest
 from particle.drives import DriveTable
@@ -103,8 +103,8 @@ def find_feasible(
     window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
     tips: whether a part with a face is lost where an edge lifts.
-    The part's place and velocity do not matter, but its heading does. The time between moments is halved until the areas hold to
-    TOLERANCE, at most MAX_HALVINGS times.
+    The part's place and velocity do not matter; a face keeps its heading. The time between moments is halved until the
+    areas hold to TOLERANCE, at most MAX_HALVINGS times.
     """
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window, count = min(window, MAX_STROKES * stroke_time), moments_in(window, stroke_time)
@@ -161,7 +161,7 @@ def _examine(
         return _count(rest, squares, np.linspace(0.0, window, moments + 1), every**2)
 
     # Few squares tell how many moments are enough.
-    few = squares_within(place.outline, min(place.across, FEW), place.part)
+    few = squares_within(place.outline, min(place.across, FEW), rest)
     coarse, error = look(few, count), np.inf
     for _ in range(most):
         fine = look(few, 2 * count)
@@ -169,7 +169,7 @@ def _examine(
         if error <= TOLERANCE:
             break
         coarse, count = fine, 2 * count
-    squares = squares_within(place.outline, place.across, place.part)
+    squares = squares_within(place.outline, place.across, rest)
     found = look(squares, count)
     areas = found.slips.mean(axis=0) * squares.side**2
     moments = window * (np.arange(areas.shape[2]) + 0.5) / areas.shape[2]

@@ -171,14 +171,14 @@ def _chart(
 
 def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray, across: int) -> Feasible:
     """The areas over a window [s]; a plate with mass is driven anew at each factor."""
-    case = ground.case
-    run, tips = case.run, case.run.after_tipping == "stop"
-    place = Place(ground.outline, build_part(case), ground.friction, run.gravity, across, tips)
+    case, part = ground.case, build_part(ground.case)
+    rest = case.run.gravity, across, case.run.after_tipping == "stop"
     if ground.follows:
         surface = ground.driven(1.0, 1.0)
-        return find_feasible(surface, place.outline, place.part, place.friction, whole, factors, *place[3:])
+        return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, *rest)
     model = getattr(ground.surface, "model", None)
     assert isinstance(model, (VibrationModel, RingingModel))
+    place = Place(ground.outline, part, ground.friction, *rest)
     return find_feasible_anew(
         lambda factor, end: ground.driven(factor, 1.0, end), model.chosen.modes.frequencies, stroke_time, place, whole,
         factors,

@@ -12,7 +12,7 @@ from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.feasibility.counting import Fields, Resting, find_responses
 from meshes import Outline
 from particle import Body, Micropart, PartAtRest
-from particle.body import new_scratch
+from particle.body import Face
 from particle.friction import Contact
 
 MAX_KEPT: Final = 30_000_000  # numbers of the surface that are kept from the search for losses to that for slips
@@ -27,8 +27,8 @@ class Squares(NamedTuple):
     neighbours: IntArray  # (n, 4) those at -x, +x, -y and +y; where there is none the square itself
 
 
-def squares_within(outline: Outline, across: int, part: Micropart | Body | None = None) -> Squares:
-    """Squares whose centres an outline encloses, so many along its longer side; of a face where all of it does.
+def squares_within(outline: Outline, across: int, rest: PartAtRest | None = None) -> Squares:
+    """Squares whose centres an outline encloses, so many along its longer side; for a face where all of it lies within.
 
     Raises ValueError where it does nowhere.
     """
@@ -38,10 +38,10 @@ def squares_within(outline: Outline, across: int, part: Micropart | Body | None 
     along = [middle + side * (np.arange(n) - (n - 1) / 2) for middle, n in zip((low + high) / 2, counts, strict=True)]
     grid = np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)
     inside = outline.gap(grid.reshape(-1, 2)).reshape(counts) > 0
-    if isinstance(part, Body):
-        inside[inside] = _on_plate(outline, part, grid[inside])
+    if rest is not None and rest.face is not None:
+        inside[inside] = _on_plate(outline, rest.face, rest.pose[2], grid[inside])
         if not inside.any():
-            raise ValueError(f"Input part of areas must have room on the plate at one of {across} places along its longer side")
+            raise ValueError(f"Input across of areas must let the part lie on the plate at some place; got {across}")
     numbers = np.full(counts + 2, -1)
     numbers[1:-1, 1:-1][inside] = np.arange(inside.sum())
     around = [numbers[:-2, 1:-1], numbers[2:, 1:-1], numbers[1:-1, :-2], numbers[1:-1, 2:]]
@@ -49,12 +49,11 @@ def squares_within(outline: Outline, across: int, part: Micropart | Body | None 
     return Squares(grid[inside], side, np.where(neighbours < 0, np.arange(len(neighbours))[:, None], neighbours))
 
 
-def _on_plate(outline: Outline, part: Body, places: FloatArray) -> BoolArray:
-    """Whether a face is on the plate, at places (n, 2) [m] of its origin."""
-    cosine, sine, face = math.cos(part.heading), math.sin(part.heading), part.footprint
-    points = np.concatenate([face.corners, face.averaging(3)[0]]) @ np.array([[cosine, sine], [-sine, cosine]])
+def _on_plate(outline: Outline, face: Face, heading: float, places: FloatArray) -> BoolArray:
+    """Whether a face is on the plate, at places (n, 2) [m] of its origin and a heading [rad]."""
+    turn = np.array([[math.cos(heading), math.sin(heading)], [-math.sin(heading), math.cos(heading)]])
     on = outline.gap(places) >= face.radius
-    for point in points:
+    for point in np.concatenate([face.corners, face.places]) @ turn:
         on &= outline.gap(places + point) >= 0
     return on
 
@@ -75,11 +74,12 @@ def resting_of(rest: PartAtRest) -> Resting | None:
     face = rest.face
     if face is None:
         return None
+    memory = rest.memory(np.array([rest.pose[:2]]), float(rest.times[0]))
     around = np.linspace(0.0, 2 * math.pi, 48, endpoint=False)[:, None]
     rim = face.radius * np.hstack([np.cos(around), np.sin(around)]) if face.radius else face.hull
     levers = rim @ face.unmoments @ np.array([[0.0, -1.0], [1.0, 0.0]])
     levers = np.concatenate([np.zeros((1, 2)), levers if face.linear and face.tips else np.zeros((0, 2))])
-    return Resting(face, levers, *new_scratch())
+    return Resting(face, levers, memory.balance, memory.search)
 
 
 def responses_of(rest: PartAtRest, points: FloatArray, moments: FloatArray) -> Callable[[], Iterable[FloatArray]]:
