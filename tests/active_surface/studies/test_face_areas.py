@@ -1,0 +1,76 @@
+"""Feasible areas of a part with a face: against drives that really run faster, the point, and runs beside borders."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from active_surface.studies.feasibility.area import find_feasible
+from active_surface.studies.feasibility.places import resting_of, responses_of, squares_within
+from coupling import borders, surface_motion
+from fem_plate.analytic import DiscShapes
+from particle import (
+    Body,
+    CoulombAdhesion,
+    Drive,
+    Footprint,
+    KogutEtsion,
+    Micropart,
+    Outcome,
+    part_at_rest,
+    polynomial_surface,
+    simulate,
+)
+
+MASS, RADIUS, FREQUENCY = 2e-9, 300e-6, 400.0
+SHAPES = DiscShapes([[40e-6, 20e-6]], RADIUS)
+LAW = CoulombAdhesion(0.1, 2e-7, 0.12)
+PERIOD = 1 / FREQUENCY
+
+
+def plate(stroke=40e-6):
+    return surface_motion(SHAPES, [Drive(stroke, FREQUENCY)])
+
+
+def bar(pressure="linear", footprint=None, **fields):
+    footprint = Footprint.rectangle(90e-6, 60e-6) if footprint is None else footprint
+    return Body(footprint, mass=MASS, **{"thickness": 40e-6, "position": (0.0, 0.0), "heading": 0.5, "pressure": pressure} | fields)
+
+
+def shaken():
+    """A saddle that heaves, on a base that sways and turns, in metres and seconds."""
+    c = np.zeros((3, 3, 3))
+    c[2, 0], c[0, 2], c[1, 1] = (0.02, 0.3, 0.4), (-0.01, 0.2, -0.5), (0.0, 0.1, 0.6)
+    c[0, 0, 2] = 1.0
+    return polynomial_surface(c, (Drive(0.05, 1.0, "sine"), Drive(0.02, 2.0, "sine"), Drive(0.1, 1.5, "sine")))
+
+
+@pytest.mark.parametrize("factor", [0.5, 3.0])
+def test_responses_are_those_of_drives_that_really_run_faster(factor):
+    body = Body(Footprint.rectangle(0.2, 0.1), 0.03, 2.0, position=(0.0, 0.0), heading=0.4, squeeze=1.0)
+    rest = part_at_rest(shaken(), body, LAW, 1.0, (0.3, 0.2, -9.8))
+    places, times = np.array([(0.1, -0.2), (0.3, 0.05)]), np.array([0.1, 0.35])
+    slow, fast = rest.responses(places, times), rest.scaled(factor).responses(places, times / factor)
+    constant, growing = np.r_[0:6:2, 6:9], np.r_[1:6:2, 9:12]
+    mine = slow[..., constant] + factor**2 * slow[..., growing]
+    its = fast[..., constant] + fast[..., growing]
+    assert np.abs(mine - its).max() < 1e-11 * np.abs(its).max()
+    assert (np.abs(slow[..., growing]).max(axis=(0, 1)) > 1e-4).all()
+
+
+def test_a_small_face_bears_what_a_point_does():
+    """The difference falls as size squared; of a point there are three components of m p, in axes of the plate."""
+    surface, places = plate(), np.array([(90e-6, -40e-6), (-150e-6, 30e-6)])
+    times = np.array([0.2, 0.7]) * PERIOD
+    dot = Micropart(MASS, (0.0, 0.0), squeeze=1e-8)
+    point = np.array(list(responses_of(part_at_rest(surface, dot, LAW, PERIOD), places, times)()))
+    off = []
+    for size in (2e-6, 1e-6):
+        small = bar(footprint=Footprint.rectangle(size, size), thickness=size, centre_height=0.0, squeeze=1e-8)
+        face = np.array(list(responses_of(part_at_rest(surface, small, LAW, PERIOD), places, times)()))
+        forces = np.linalg.norm(face[..., 6:8] + face[..., 9:11], axis=-1)
+        pulls = MASS * np.linalg.norm(point[..., 2:5] + point[..., 5:8], axis=-1)
+        loads = face[..., 0] + face[..., 1] - point[..., 0] - point[..., 1]
+        off.append(max(np.abs(forces / pulls - 1).max(), np.abs(loads).max() / (MASS * 9.8)))
+    assert off[1] < 1e-4 and off[0] / off[1] == pytest.approx(4, rel=0.02)
