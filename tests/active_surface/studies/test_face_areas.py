@@ -1,13 +1,10 @@
 """Feasible areas of a part with a face: against drives that really run faster, the point, and runs beside borders."""
 
-import math
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from active_surface.studies.feasibility.area import find_feasible
-from active_surface.studies.feasibility.places import resting_of, responses_of, squares_within
+from active_surface.studies.feasibility.places import responses_of, squares_within
 from coupling import borders, surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
@@ -15,9 +12,7 @@ from particle import (
     CoulombAdhesion,
     Drive,
     Footprint,
-    KogutEtsion,
     Micropart,
-    Outcome,
     part_at_rest,
     polynomial_surface,
     simulate,
@@ -27,15 +22,16 @@ MASS, RADIUS, FREQUENCY = 2e-9, 300e-6, 400.0
 SHAPES = DiscShapes([[40e-6, 20e-6]], RADIUS)
 LAW = CoulombAdhesion(0.1, 2e-7, 0.12)
 PERIOD = 1 / FREQUENCY
+ACROSS = 24
 
 
 def plate(stroke=40e-6):
     return surface_motion(SHAPES, [Drive(stroke, FREQUENCY)])
 
 
-def bar(pressure="linear", footprint=None, **fields):
-    footprint = Footprint.rectangle(90e-6, 60e-6) if footprint is None else footprint
-    return Body(footprint, mass=MASS, **{"thickness": 40e-6, "position": (0.0, 0.0), "heading": 0.5, "pressure": pressure} | fields)
+def bar(**fields):
+    own = {"footprint": Footprint.rectangle(90e-6, 60e-6), "thickness": 40e-6, "position": (0.0, 0.0), "heading": 0.5}
+    return Body(mass=MASS, **own | fields)
 
 
 def shaken():
@@ -74,3 +70,54 @@ def test_a_small_face_bears_what_a_point_does():
         loads = face[..., 0] + face[..., 1] - point[..., 0] - point[..., 1]
         off.append(max(np.abs(forces / pulls - 1).max(), np.abs(loads).max() / (MASS * 9.8)))
     assert off[1] < 1e-4 and off[0] / off[1] == pytest.approx(4, rel=0.02)
+
+
+@pytest.mark.compiled
+def test_areas_of_a_small_face_are_those_of_a_point():
+    surface, factors = plate(), np.array([1.0, 2.0])
+
+    def find(part):
+        return find_feasible(surface, SHAPES.outline, part, LAW, PERIOD, factors, across=12)
+
+    point = find(Micropart(MASS, (0.0, 0.0)))
+    small = find(bar(footprint=Footprint.disc(1e-6), thickness=1e-6, centre_height=0.0))
+    large = find(bar())
+    assert len(small.points) == len(point.points) > len(large.points)
+    for name in ("feasible", "slipping"):
+        its, mine, other = (getattr(found, name) for found in (point, small, large))
+        assert mine.integral == pytest.approx(its.integral, rel=0.03) and (its.integral > 0).all()
+        assert (np.abs(other.integral / its.integral - 1) > 0.1).all()
+
+
+def ring(holds, neighbours):
+    """Squares (n,) on whose side of a border something holds, one off the border."""
+    whole = holds & holds[neighbours].all(axis=1)
+    return np.flatnonzero(whole & ~whole[neighbours].all(axis=1))[::3].tolist()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"pressure": "uniform"},
+        pytest.param({}, marks=pytest.mark.slow),
+        pytest.param({"footprint": Footprint.disc(35e-6)}, marks=pytest.mark.slow),
+        pytest.param({"footprint": Footprint.polygon([(0, 0), (80e-6, 0), (0, 60e-6)])}, marks=pytest.mark.slow),
+    ],
+    ids=["uniform", "linear", "disc", "triangle"],
+)
+def test_runs_beside_the_borders_slip_and_are_lost_as_areas_say(fields):
+    surface, part = plate(), bar(**fields)
+    found = find_feasible(surface, SHAPES.outline, part, LAW, PERIOD, np.array([2.0]), across=ACROSS)
+    squares = squares_within(SHAPES.outline, ACROSS, part_at_rest(surface, part, LAW, PERIOD))
+    slips, lost = found.own.shares > 0, found.own.lost
+    states = {"rest": ~slips & ~lost, "moves": slips & ~lost, "lost": lost}
+    for name, holds in states.items():
+        starts = ring(holds, squares.neighbours)
+        assert len(starts) > 2
+        paths = [simulate(surface, bar(position=tuple(found.points[n]), **fields), LAW, PERIOD) for n in starts]
+        its = ["lost" if p.outcome in borders.LOST else "moves" if p.path_length > 0 else "rest" for p in paths]
+        assert its == [name] * len(starts)
+    fast = find_feasible(surface.scaled(2.0), SHAPES.outline, part, LAW, PERIOD / 2, np.ones(1), across=ACROSS)
+    for name in ("feasible", "slipping"):
+        assert getattr(found, name).integral[0] == pytest.approx(getattr(fast, name).integral[0], rel=0.01)
