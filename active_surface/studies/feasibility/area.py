@@ -29,7 +29,7 @@ from active_surface.studies.feasibility.places import Place, Squares, responses_
 from meshes import Outline
 from particle import Body, Micropart, PartAtRest, SurfaceMotion, part_at_rest
 from particle.drives import DriveTable
-from particle.friction import Contact
+from particle.friction import LOCAL, Contact
 
 ACROSS: Final = 100  # places along the longer side of the plate
 PER_STROKE: Final = 24  # moments in the shortest stroke, at first
@@ -156,6 +156,8 @@ def _examine(
     """The areas at so many moments of the whole window [s] or, up to `most` times, twice as many; ascending factors."""
     every = np.append(factors, 1.0)
     rest = part_at_rest(surface, place.part, place.friction, window, place.gravity, place.tips)
+    if rest.part.law.kind == LOCAL:
+        raise ValueError("Input friction of find_feasible must not be a LocalContact")
 
     def look(squares: Squares, moments: int) -> _Counts:
         return _count(rest, squares, np.linspace(0.0, window, moments + 1), every**2)

@@ -135,7 +135,5 @@ def test_a_factor_is_a_drive_that_runs_so_much_faster():
 
 def test_a_face_that_has_no_room_is_refused():
     large = bar(footprint=Footprint.disc(290e-6))
-    with pytest.raises(
-        ValueError, match="^Input across of areas must let the part lie on the plate at some place; got 10"
-    ):
+    with pytest.raises(ValueError, match="^Input across of areas must let the part lie .* got 10$"):
         find_feasible(plate(), SHAPES.outline, large, LAW, PERIOD, np.ones(1), across=10)
