@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from active_surface.studies.feasibility.area import find_feasible
+from active_surface.studies.feasibility.case import _areas
+from active_surface.studies.feasibility.ground import make_ground
 from active_surface.studies.feasibility.places import responses_of, squares_within
 from coupling import borders, surface_motion
+from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
 from fem_plate.analytic import DiscShapes
 from particle import (
     Body,
@@ -131,6 +134,27 @@ def test_a_factor_is_a_drive_that_runs_so_much_faster():
     for name in ("feasible", "slipping"):
         integral = getattr(found, name).integral
         assert integral[0] > 0 and integral == pytest.approx(getattr(fast, name).integral, rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_a_case_has_the_areas_of_its_face():
+    """It is lost on less of the plate where tipping is ignored."""
+    lost = []
+    for after in ("stop", "ignore"):
+        case = Case(
+            plate={"shape": "disc", "radius": RADIUS, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6},
+            actuators=[ActuatorCase(position=(40e-6, 20e-6), stroke=40e-6, frequency=FREQUENCY)],
+            part=PartCase(
+                mass=MASS, position=(0.0, 0.0), heading=0.5, footprint="rectangle", sides=(90e-6, 60e-6), thickness=4e-5
+            ),
+            friction=CoulombCase(coefficient=0.05, adhesion=2e-7, static_coefficient=0.06),
+            run=RunCase(duration=PERIOD, after_tipping=after),
+            name="bar",
+        )  # fmt: skip
+        ground = make_ground(case, (1.0, 1.0), (1.0, 1.0), PERIOD, PERIOD)
+        lost.append(_areas(ground, PERIOD, PERIOD / 2, np.ones(1), 16).own.lost_area)
+    assert lost[0] > 1.1 * lost[1] > 0
 
 
 def test_a_face_that_has_no_room_is_refused():
