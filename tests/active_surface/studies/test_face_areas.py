@@ -12,11 +12,13 @@ from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
 from fem_plate.analytic import DiscShapes
 from particle import (
     Body,
+    ConstantFriction,
     CoulombAdhesion,
     Drive,
     Footprint,
     Micropart,
     part_at_rest,
+    platform_surface,
     polynomial_surface,
     simulate,
 )
@@ -121,6 +123,20 @@ def test_runs_beside_the_borders_slip_and_are_lost_as_areas_say(fields):
         paths = [simulate(surface, bar(position=tuple(found.points[n]), **fields), LAW, PERIOD) for n in starts]
         its = ["lost" if p.outcome in borders.LOST else "moves" if p.path_length > 0 else "rest" for p in paths]
         assert its == [name] * len(starts)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("share", [0.98, 1.02])
+def test_a_table_that_turns_makes_a_square_slip_by_torque_alone(share):
+    """In its middle a level square bears up to .382597858 Q a: it slips if it needs more."""
+    side, turn = 300e-6, Drive(1e-3, FREQUENCY, "sine")
+    largest = np.abs(turn.evaluate(np.linspace(0.0, PERIOD, 4001))[2]).max()
+    limit = MASS * side**2 / 6 * largest / (0.382597858 * side) / share
+    square = bar(footprint=Footprint.rectangle(side, side))
+    table = platform_surface(turn=turn, size=1e-3)
+    found = find_feasible(table, SHAPES.outline, square, ConstantFriction(limit), PERIOD, np.ones(1), across=31)
+    middle = np.hypot(*found.points.T).argmin()
+    assert (found.own.shares[middle] > 0) == (share > 1)
 
 
 @pytest.mark.slow
