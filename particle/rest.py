@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from particle.body import Body, Face, new_body_memory, rest_margins
+from particle.body import Body, BodyMemory, Face, new_body_memory, rest_margins, rest_responses
 from particle.drives import next_breakpoint
 from particle.events import Part, rest_loads
 from particle.friction import Contact, friction_limits
@@ -61,11 +61,7 @@ class PartAtRest:
     def _signals(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What holds the part over what friction gives (n,), and the margin of contact (n,), at times (n,) [s]."""
         if self.face is not None:
-            *place, heading = self.pose
-            cosine, sine = math.cos(heading), math.sin(heading)
-            points = self.face.places @ np.array([[cosine, sine], [-sine, cosine]]) + place
-            self.surface.samples(points, np.full(len(points), times[0]))  # builds the cells under the face
-            memory = new_body_memory(self.surface.record, self.face, np.zeros(1, dtype=np.int64))
+            memory = self.memory(np.array([self.pose[:2]]), float(times[0]))
             found = rest_margins(self.surface.record, self.part, self.face, memory, *self.pose, times)
             return found[:, 0], found[:, 1]
         loads, pulls = np.empty(len(times)), np.empty(len(times))
@@ -80,6 +76,24 @@ class PartAtRest:
         if math.isfinite(law.largest_load):
             margins = np.minimum(margins, (law.largest_load - loads) / unit)
         return pull_ratios(self.part, loads, self.part.mass * pulls), margins
+
+    def responses(self, places: FloatArray, times: FloatArray) -> FloatArray:
+        """What a part with a face must bear at other places (n, 2) [m], at times (k,) [s]; (k, n, 12).
+
+        In numbers of `particle.body.rest_responses`, by factors of all the drives' frequencies.
+        """
+        assert self.face is not None
+        memory = self.memory(places, float(times[0]))
+        return rest_responses(self.surface.record, self.part, self.face, memory, places, self.pose[2], times)
+
+    def memory(self, places: FloatArray, time: float) -> BodyMemory:
+        """Scratch memory for the face, once the cells are built that it lies on at places (n, 2) [m]."""
+        assert self.face is not None
+        cosine, sine = math.cos(self.pose[2]), math.sin(self.pose[2])
+        under = self.face.places @ np.array([[cosine, sine], [-sine, cosine]])
+        points = (places[:, None] + under).reshape(-1, 2)
+        self.surface.samples(points, np.full(len(points), time))
+        return new_body_memory(self.surface.record, self.face, np.zeros(1, dtype=np.int64))
 
 
 def part_at_rest(

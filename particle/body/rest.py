@@ -12,13 +12,13 @@ import math
 
 import numpy as np
 
-from particle.body.averages import enter_all
-from particle.body.balance import least_pressure
+from particle.body.averages import TT, T, enter_all
+from particle.body.balance import Balance, Base, fill_forces, least_pressure, set_load
 from particle.body.face import Face
-from particle.body.limit import gauge, needed
+from particle.body.limit import Search, gauge, needed
 from particle.body.memory import HEADING, Memory, X, Y
 from particle.body.press import pull_to_end
-from particle.body.state import contact_margin, settle
+from particle.body.state import base_at, contact_margin, settle
 from particle.events import Request
 from particle.events.mechanics import Part
 from particle.friction import LOCAL, friction_limit, friction_slope
@@ -46,17 +46,21 @@ def excess(part: Part, face: Face, memory: Memory, time: float) -> float:
     if margin < 0.0:
         return -margin
     needed(b, s.needed)
+    return max(quick_gauge(part, face, b, s) - 1.0, -margin)
+
+
+@device_no_arrays
+def quick_gauge(part: Part, face: Face, b: Balance, s: Search) -> float:
+    """The gauge of s.needed under b.load; far below the limit an upper bound takes its place."""
     if part.law.kind == LOCAL:
-        return max(gauge(part, face, b, s) - 1.0, -margin)
+        return gauge(part, face, b, s)
     turn = s.needed[2] / face.arm
     force = math.sqrt(s.needed[0] * s.needed[0] + s.needed[1] * s.needed[1] + turn * turn)
     load = b.load[0]
     least = friction_limit(part.law, load) + friction_slope(part.law, load) * (least_pressure(face, b) - load)
     if force < SAFE * INNER * part.law.static_ratio * least:
-        bound = force / (INNER * part.law.static_ratio * least) - 1.0
-    else:
-        bound = gauge(part, face, b, s) - 1.0
-    return max(bound, -margin)
+        return force / (INNER * part.law.static_ratio * least)
+    return gauge(part, face, b, s)
 
 
 @jit
@@ -89,6 +93,47 @@ def rest_margins(
         else:
             out[k, 0] = math.inf if pulled else 0.0
         out[k, 1] = margin
+    return out
+
+
+@jit
+def rest_responses(
+    surface: Surface, part: Part, face: Face, memory: Memory, places: FloatArray, heading: float, times: FloatArray
+) -> FloatArray:
+    """What a part at rest bears under drives sqrt(q) times as fast: (k, n, 12), at places (n, 2) [m], times (k,) [s].
+
+    a and b of the load a + b q [N], of its moments M_1 and M_2 likewise [N m], then c and d of the wrench W = c + d q.
+    Rates of the surface and the base grow by sqrt(q), second rates by q; pose and gravity stay.
+    """
+    out = np.full((len(times), len(places), 12), np.nan)
+    b, s, state = memory.balance[0], memory.search[0], memory.step[0].state
+    for n in range(len(places)):
+        x, y, end = places[n, 0], places[n, 1], -math.inf
+        state[:] = 0.0
+        state[X], state[Y], state[HEADING] = x, y, heading
+        for k in range(len(times)):
+            time, row = times[k], out[k, n]
+            if not time < end:
+                cell, end = enter_all(
+                    surface, memory.local, memory.slots, face, x, y, heading, time, math.inf, (0.0, 0.0)
+                )
+                if cell < 0:
+                    break
+            if not settle(part, face, memory, state, time):
+                continue
+            needed(b, s.needed)
+            for i in range(3):
+                row[2 * i + 1], row[9 + i] = b.load[i], s.needed[i]
+            for i in range(len(b.averages[T])):
+                b.averages[T, i] = b.averages[TT, i] = 0.0
+            base = base_at(memory.local, time)
+            still = Base(base.x, base.y, base.turn, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            fill_forces(part, face, still, 0.0, 0.0, 0.0, b)
+            set_load(part, 0.0, 0.0, 0.0, b)
+            needed(b, s.needed)
+            for i in range(3):
+                row[2 * i], row[6 + i] = b.load[i], s.needed[i]
+                row[2 * i + 1], row[9 + i] = row[2 * i + 1] - b.load[i], row[9 + i] - s.needed[i]
     return out
 
 

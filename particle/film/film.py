@@ -82,7 +82,7 @@ class Film:
         exact, bends = _functions(fine)[0], np.column_stack([np.ones(len(fine)), _heights(half * fine)])
         return Layer(
             law=law._replace(per_area=law.per_area * np.repeat([share, factor], 4)),
-            bends=local is not None or not rough,
+            bends=local is not None,
             grips=rough,
             closed=own.branch[0],
             half=half,

@@ -7,6 +7,8 @@ v = 0). Two areas follow from that, both over one window of time:
 - feasible: places where it slips at that moment, and where it would not have come off at any moment of the window;
 - slipping: places where it slips at that moment and is attached then, whatever happens there at other moments.
 
+A part with a face slips beyond its limit surface and is lost where an edge lifts, too (`particle.body.rest`).
+
 Drives that run `factor` times as fast leave shapes and slopes as they are and multiply accelerations by its square,
 unless the plate has mass: then it moves in another way at each factor, and is driven anew.
 """
@@ -14,28 +16,20 @@ unless the plate has mass: then it moves in another way at each factor, and is d
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from active_surface.arrays import BoolArray, FloatArray, IntArray
-from active_surface.studies.feasibility.counting import (
-    SHARES,
-    SIDE,
-    Fields,
-    count_slips,
-    find_held,
-    find_responses,
-    find_states,
-)
+from active_surface.arrays import BoolArray, FloatArray
+from active_surface.studies.feasibility.counting import SHARES, SIDE, count_slips, find_held, find_states
+from active_surface.studies.feasibility.places import Place, Squares, responses_of, resting_of, squares_within
 from meshes import Outline
-from particle import Micropart, SurfaceMotion, part_record
+from particle import Body, Micropart, PartAtRest, SurfaceMotion, part_at_rest
 from particle.drives import DriveTable
-from particle.events import Part
-from particle.friction import Contact
+from particle.friction import LOCAL, Contact
 
 ACROSS: Final = 100  # places along the longer side of the plate
 PER_STROKE: Final = 24  # moments in the shortest stroke, at first
@@ -46,7 +40,6 @@ MAX_FINER: Final = 8  # times as many moments as strokes take
 TOLERANCE: Final = 0.01  # of the areas: what half of that time may change
 FEW: Final = 24  # places along the longer side that tell how many moments are enough
 MAX_STROKES: Final = 85  # of the shortest, in a window
-MAX_KEPT: Final = 30_000_000  # numbers of the surface that are kept from the search for losses to that for slips
 
 
 class Curves(NamedTuple):
@@ -92,48 +85,16 @@ class Feasible:
     count: int  # moments looked at in the window, between which the surface is taken as linear
 
 
-class Squares(NamedTuple):
-    """What an outline encloses, cut into squares side by side."""
-
-    centres: FloatArray  # (n, 2) m
-    side: float  # m
-    neighbours: IntArray  # (n, 4) those at -x, +x, -y and +y; where there is none the square itself
-
-
-def squares_within(outline: Outline, across: int) -> Squares:
-    """Squares whose centres an outline encloses, so many along its longer side."""
-    low, high = outline.box
-    side = float((high - low).max()) / across
-    counts = np.ceil((high - low) / side - 1e-9).astype(int)
-    along = [middle + side * (np.arange(n) - (n - 1) / 2) for middle, n in zip((low + high) / 2, counts, strict=True)]
-    grid = np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)
-    inside = outline.gap(grid.reshape(-1, 2)).reshape(counts) > 0
-    numbers = np.full(counts + 2, -1)
-    numbers[1:-1, 1:-1][inside] = np.arange(inside.sum())
-    around = [numbers[:-2, 1:-1], numbers[2:, 1:-1], numbers[1:-1, :-2], numbers[1:-1, 2:]]
-    neighbours = np.stack([one[inside] for one in around], axis=1)
-    return Squares(grid[inside], side, np.where(neighbours < 0, np.arange(len(neighbours))[:, None], neighbours))
-
-
-class Place(NamedTuple):
-    """Where a part lies at rest, and under which law and gravity."""
-
-    outline: Outline
-    part: Micropart
-    friction: Contact
-    gravity: float | Sequence[float]
-    across: int  # squares along the outline's longer side
-
-
 def find_feasible(
     surface: SurfaceMotion,
     outline: Outline,
-    part: Micropart,
+    part: Micropart | Body,
     friction: Contact,
     window: float,
     factors: FloatArray,
     gravity: float | Sequence[float] = 9.80665,
     across: int = ACROSS,
+    tips: bool = True,
 ) -> Feasible:
     """The feasible areas of a part at rest on a surface within an outline, over a window [s] from the start.
 
@@ -141,12 +102,13 @@ def find_feasible(
         its drives at once; one with inertia does not.
     window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
-    The part's place and velocity do not matter. The time between moments is halved until the areas hold to
-    TOLERANCE, at most MAX_HALVINGS times.
+    tips: whether a part with a face is lost where an edge lifts.
+    The part's place and velocity do not matter; a face keeps its heading. The time between moments is halved until the
+    areas hold to TOLERANCE, at most MAX_HALVINGS times.
     """
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window, count = min(window, MAX_STROKES * stroke_time), moments_in(window, stroke_time)
-    place = Place(outline, part, friction, gravity, across)
+    place = Place(outline, part, friction, gravity, across, tips)
     return _examine(surface, place, window, count, np.sort(np.asarray(factors, dtype=float)), MAX_HALVINGS)
 
 
@@ -193,13 +155,15 @@ def _examine(
 ) -> Feasible:
     """The areas at so many moments of the whole window [s] or, up to `most` times, twice as many; ascending factors."""
     every = np.append(factors, 1.0)
-    resting = part_record(surface, place.part, place.friction, place.gravity)
+    rest = part_at_rest(surface, place.part, place.friction, window, place.gravity, place.tips)
+    if rest.part.law.kind == LOCAL:
+        raise ValueError("Input friction of find_feasible must not be a LocalContact")
 
     def look(squares: Squares, moments: int) -> _Counts:
-        return _count(surface, squares, np.linspace(0.0, window, moments + 1), resting, every**2)
+        return _count(rest, squares, np.linspace(0.0, window, moments + 1), every**2)
 
     # Few squares tell how many moments are enough.
-    few = squares_within(place.outline, min(place.across, FEW))
+    few = squares_within(place.outline, min(place.across, FEW), rest)
     coarse, error = look(few, count), np.inf
     for _ in range(most):
         fine = look(few, 2 * count)
@@ -207,7 +171,7 @@ def _examine(
         if error <= TOLERANCE:
             break
         coarse, count = fine, 2 * count
-    squares = squares_within(place.outline, place.across)
+    squares = squares_within(place.outline, place.across, rest)
     found = look(squares, count)
     areas = found.slips.mean(axis=0) * squares.side**2
     moments = window * (np.arange(areas.shape[2]) + 0.5) / areas.shape[2]
@@ -236,22 +200,23 @@ class _Counts(NamedTuple):
         return np.concatenate([counts.max(axis=2), counts.mean(axis=2)])
 
 
-def _count(surface: SurfaceMotion, squares: Squares, moments: FloatArray, part: Part, scales: FloatArray) -> _Counts:
+def _count(rest: PartAtRest, squares: Squares, moments: FloatArray, scales: FloatArray) -> _Counts:
     size, neighbours = (len(squares.centres), len(scales)), squares.neighbours
-    responses = _responses(surface, squares.centres, moments, part)
+    part, resting, responses = rest.part, resting_of(rest), responses_of(rest, squares.centres, moments)
     held = np.empty((size[0], SIDE, SIDE, 2))
     held[:] = 0.0, np.inf
     for one in responses():
-        find_held(one, neighbours, part, held)
+        find_held(one, neighbours, part, resting, held)
     low, high = held[..., :1], held[..., 1:]
     lost = (~((low <= scales) & (scales <= high))).sum(axis=(1, 2), dtype=np.int8)
     first, second = np.zeros(size, dtype=np.int8), np.zeros(size, dtype=np.int8)
     slips, counts = np.zeros(size[0]), np.zeros((len(moments) - 1, 2, 2, size[1], SHARES))
     before: FloatArray | None = None
     for k, after in enumerate(responses()):
-        find_states(after, scales, part, second)
+        find_states(after, scales, part, resting, second)
         if before is not None:
-            count_slips(before, after, neighbours, scales, part, held, lost, first, second, counts[k - 1], slips)
+            state = held, lost, first, second
+            count_slips(before, after, neighbours, scales, part, resting, *state, counts[k - 1], slips)
         before, first, second = after, second, first
     ordered = np.moveaxis(counts, 0, 3).reshape(2, 2, size[1], -1)
     return _Counts(ordered, lost / SIDE**2, slips / (len(moments) - 1))
@@ -270,27 +235,3 @@ def moving(drives: DriveTable) -> BoolArray:
     """Whether each drive (N,) ever changes its height; one without a stroke has a frequency, too."""
     pieces = drives.coefficients[:, 1:]
     return np.array([pieces[first:last].any() for first, last in pairwise(drives.first)], dtype=np.bool_)
-
-
-def _responses(
-    surface: SurfaceMotion, points: FloatArray, moments: FloatArray, part: Part
-) -> Callable[[], Iterable[FloatArray]]:
-    """Of a part at rest at the places, moment by moment (n, 8), as of `find_responses`.
-
-    On a mid-plane that stretches slopes are the material's, off by its strain. Responses are kept where they take
-    little memory, else found again.
-    """
-
-    def find() -> Iterator[FloatArray]:
-        for time in moments.tolist():
-            s = surface.evaluate(points, time)
-            base = s.u_tt + surface.base_acceleration(time)
-            fields = Fields(*map(np.ascontiguousarray, (s.w_tt, s.gradient, s.gradient_t, s.gradient_tt, base)))
-            found = np.zeros((len(points), 8))
-            find_responses(fields, part, found)
-            yield found
-
-    if 8 * len(points) * len(moments) > MAX_KEPT:
-        return find
-    kept = list(find())
-    return lambda: kept

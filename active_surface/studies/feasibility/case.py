@@ -17,7 +17,6 @@ from active_surface.studies.feasibility.area import (
     ACROSS,
     MAX_STROKES,
     Feasible,
-    Place,
     find_feasible,
     find_feasible_anew,
     moving,
@@ -31,10 +30,11 @@ from active_surface.studies.feasibility.chart import (
     nearest,
 )
 from active_surface.studies.feasibility.ground import Ground, make_ground, valid_strokes
+from active_surface.studies.feasibility.places import Place
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.response import range_fault
 from common import quantity_text
-from coupling import Progress, borders, build_drives, build_point, check_case, silent
+from coupling import Progress, borders, build_drives, build_part, check_case, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
@@ -113,8 +113,8 @@ def feasibility(
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
     if case.air is not None and case.air.film:
         raise ValueError("Input case of feasibility must have no film of air (air.film): its bounds leave that out")
-    if areas and (case.part.face is not None or case.part.local_contact):
-        raise ValueError("Input areas of feasibility must be false with part.footprint or part.local_contact")
+    if areas and case.part.local_contact:
+        raise ValueError("Input areas of feasibility must be false with part.local_contact")
     if not frequency:
         raise ValueError("Input case of feasibility must have a drive that moves; got none")
     if fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS):
@@ -173,13 +173,14 @@ def _chart(
 
 def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray, across: int) -> Feasible:
     """The areas over a window [s]; a plate with mass is driven anew at each factor."""
-    case, part = ground.case, build_point(ground.case)
+    case, part = ground.case, build_part(ground.case)
+    rest = case.run.gravity, across, case.run.after_tipping == "stop"
     if ground.follows:
         surface = ground.driven(1.0, 1.0)
-        return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, case.run.gravity, across)
+        return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, *rest)
     model = getattr(ground.surface, "model", None)
     assert isinstance(model, (VibrationModel, RingingModel))
-    place = Place(ground.outline, part, ground.friction, case.run.gravity, across)
+    place = Place(ground.outline, part, ground.friction, *rest)
     return find_feasible_anew(
         lambda factor, end: ground.driven(factor, 1.0, end), model.chosen.modes.frequencies, stroke_time, place, whole,
         factors,

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.feasibility.area import squares_within
+from active_surface.studies.feasibility.places import squares_within
 from coupling import (
     AnsweringSurface,
     PathTask,

@@ -9,10 +9,11 @@ from sweeps import PLATE
 
 from active_surface.cli.program import main
 from active_surface.studies.feasibility import area
-from active_surface.studies.feasibility.area import Curves, find_feasible, squares_within
+from active_surface.studies.feasibility.area import Curves, find_feasible
 from active_surface.studies.feasibility.case import feasibility
 from active_surface.studies.feasibility.chart import Chart
 from active_surface.studies.feasibility.pick import pick
+from active_surface.studies.feasibility.places import squares_within
 from active_surface.studies.feasibility.report import lines, warnings
 from common import quantity_text
 from coupling import build_friction, build_surface, follow_part, read_case, run_case, surface_motion
