@@ -91,6 +91,8 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
             yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
         elif parts[place].size is not None and "contact_area" in stated(friction):
             yield ("friction", "contact_area"), f"must not be given with local_contact and size in {where}"
+        elif (face := parts[place].face) is not None and not face.star_shaped:
+            yield (*place, "corners"), "must outline a face all of which its centroid sees, with local_contact = true"
     if run.after_tipping == "ignore" and any(part.local_contact and part.face for part in parts.values()):
         yield ("run", "after_tipping"), f'must be "stop" with local_contact = true in {where}; got "ignore"'
     if run.scheme == "paper" and any(part.local_contact for part in parts.values()):
