@@ -83,6 +83,11 @@ class Footprint:
         """(2, 2) m^2, the mean of rho rho^T over the face, rho counted from the centroid."""
         return np.eye(2) * self.radius**2 / 4 if self.radius else _moments(self.corners)[2]
 
+    @property
+    def star_shaped(self) -> bool:
+        """Whether the centroid sees all of it."""
+        return bool((self.rule(1)[1] > 0).all())
+
     def outline(self, position: ArrayLike, heading: ArrayLike) -> FloatArray:
         """(..., k, 2) m, its corners, or places around a disc, at positions (..., 2) [m] and headings (...,) [rad]."""
         around, turn = 2 * math.pi * np.arange(48) / 48, np.asarray(heading, dtype=float)[..., None]
@@ -181,8 +186,8 @@ class Footprint:
         places, weights = self.rule(points + 4)
         x, y = places.T / self.reach
         powers = np.stack([x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)])
-        # An orthonormal basis under the rule, so that pivots and weights are well conditioned.
-        basis = np.linalg.solve(np.linalg.cholesky((powers * weights) @ powers.T), powers)
+        # An orthonormal basis over its places, so that pivots and weights are well conditioned.
+        basis = np.linalg.solve(np.linalg.cholesky((powers * np.abs(weights)) @ powers.T), powers)
         chosen = np.sort(qr(basis, mode="economic", pivoting=True)[2][: len(powers)])
         return places[chosen], np.asarray(np.linalg.solve(basis[:, chosen], basis @ weights), dtype=float)
 

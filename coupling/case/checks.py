@@ -94,6 +94,8 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
         elif (part.local_contact or film) and part.size is not None and "contact_area" in stated(friction):
             by = "local_contact" if part.local_contact else "a film of air"
             yield ("friction", "contact_area"), f"must not be given with {by} and size in {where}"
+        elif part.local_contact and part.face is not None and not part.face.star_shaped:
+            yield (*place, "corners"), "must outline a face all of which its centroid sees, with local_contact = true"
     if run.after_tipping == "ignore" and any(part.local_contact and part.face for part in parts.values()):
         yield ("run", "after_tipping"), f'must be "stop" with local_contact = true in {where}; got "ignore"'
     if run.scheme == "paper" and any(part.local_contact for part in parts.values()):

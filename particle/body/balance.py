@@ -71,29 +71,21 @@ class Balance(Press):
 
 
 @device_no_arrays
-def solve(m: Any, out: Any) -> bool:
-    """Solve the real or complex system (n, n + 1) by elimination with pivots, in place; False where it is singular."""
-    n = len(m)
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(m[i, k]) > abs(m[pivot, k]):
-                pivot = i
-        if not 0.0 < abs(m[pivot, k]) < math.inf:
-            return False
-        if pivot != k:
-            for j in range(k, n + 1):
-                m[k, j], m[pivot, j] = m[pivot, j], m[k, j]
-        for i in range(k + 1, n):
-            factor = m[i, k] / m[k, k]
-            if factor != 0.0:
-                for j in range(k + 1, n + 1):
-                    m[i, j] -= factor * m[k, j]
-    for k in range(n - 1, -1, -1):
-        total = m[k, n]
-        for j in range(k + 1, n):
-            total -= m[k, j] * out[j]
-        out[k] = total / m[k, k]
+def solve(m: FloatArray, out: FloatArray) -> bool:
+    """Solve the system (3, 4) by Cramer's rule; False where it is singular."""
+    # The second column by the third, and the first by the right side.
+    a_0 = m[1, 1] * m[2, 2] - m[2, 1] * m[1, 2]
+    a_1 = m[2, 1] * m[0, 2] - m[0, 1] * m[2, 2]
+    a_2 = m[0, 1] * m[1, 2] - m[1, 1] * m[0, 2]
+    b_0 = m[1, 0] * m[2, 3] - m[2, 0] * m[1, 3]
+    b_1 = m[2, 0] * m[0, 3] - m[0, 0] * m[2, 3]
+    b_2 = m[0, 0] * m[1, 3] - m[1, 0] * m[0, 3]
+    det = m[0, 0] * a_0 + m[1, 0] * a_1 + m[2, 0] * a_2
+    if det == 0.0 or not math.isfinite(det):
+        return False
+    out[0] = (m[0, 3] * a_0 + m[1, 3] * a_1 + m[2, 3] * a_2) / det
+    out[1] = (m[0, 2] * b_0 + m[1, 2] * b_1 + m[2, 2] * b_2) / det
+    out[2] = -(m[0, 1] * b_0 + m[1, 1] * b_1 + m[2, 1] * b_2) / det
     return True
 
 
@@ -120,15 +112,18 @@ def fill_pose(part: Part, base: Base, b: Balance) -> bool:
         b.planar[0, column], b.planar[1, column] = t[0] + part.contact * t[4], t[1] - part.contact * t[3]
         b.planar[2, column] = t[5]
         b.normal[0, column], b.normal[1, column], b.normal[2, column] = t[2], t[3], t[4]
-    for column in range(3):  # K^T P = -B^T
-        for i in range(3):
-            for j in range(3):
-                b.matrix[i, j] = b.planar[j, i]
-            b.matrix[i, 3] = -b.normal[column, i]
-        if not solve(b.matrix, b.rates):
-            return False
-        for i in range(3):
-            b.workless[i, column] = b.rates[i]
+    m, n, det = b.planar, b.normal, 0.0
+    for i in range(3):  # P = -K^-T B^T, K^-T being the cofactors of K over its determinant
+        j, k = (i + 1) % 3, (i + 2) % 3
+        c_0 = m[j, 1] * m[k, 2] - m[j, 2] * m[k, 1]
+        c_1 = m[j, 2] * m[k, 0] - m[j, 0] * m[k, 2]
+        c_2 = m[j, 0] * m[k, 1] - m[j, 1] * m[k, 0]
+        if i == 0:
+            det = m[0, 0] * c_0 + m[0, 1] * c_1 + m[0, 2] * c_2
+            if det == 0.0 or not math.isfinite(det):
+                return False
+        for column in range(3):
+            b.workless[i, column] = -(c_0 * n[column, 0] + c_1 * n[column, 1] + c_2 * n[column, 2]) / det
     # The second derivatives of w, in the body's axes.
     cosine, sine = b.axes[0, 0], b.axes[0, 1]
     size = cosine * cosine + sine * sine

@@ -36,6 +36,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     for k in range(STATE):
         state[k] = request.start[k]
     memory.step[0].lead[:] = 0.0
+    memory.balance[0].stands = 0
     now.time = now.span_end = request.begin
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
     # A part that is about to slip, as at a row of its path, slips without a further event; so does one that reverses.

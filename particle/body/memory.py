@@ -32,7 +32,8 @@ class Step(Record):
     rates: Annotated[FloatArray, STAGES, 3]  # their accelerations
     margins: Annotated[FloatArray, STAGES]  # how far each is from the end of contact
     turns: Annotated[FloatArray, STAGES, 3, 3]  # by how much their accelerations change with their rates
-    system: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
+    system: Annotated[FloatArray, UNKNOWNS, UNKNOWNS]  # of Newton's steps, factorised
+    pivots: Annotated[FloatArray, UNKNOWNS]  # its rows' order
     steps: Annotated[FloatArray, UNKNOWNS]
     end: Annotated[FloatArray, STATE]  # the state at the end of the step
     friction: float  # 1/s, friction's own rate as a step begins

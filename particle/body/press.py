@@ -7,10 +7,10 @@ Over a surface whose second derivatives in the body's axes are H, the gap under 
 and (z, t) makes the potential int psi(d) dA + N z + M.t least, psi' = a - p: it bears the load N = int (p - a) dA and
 its moments M = int (p - a) rho/R dA. There may be several such gaps. The first is reached from a closed one by Newton's
 method, downhill in the potential; from a ridge of it the face tilts to a side. From then on a sliding part's gap is
-followed, and contact ends where it is stable no more: the face comes off, or rocks over, which no path follows.
+followed, and contact ends where it is no longer stable: the face comes off, or rocks over, which no path follows.
 
-Tractions q(d) give friction's wrench as in `wrench`: q and its gradient at the centre of rotation, or on the face's rim
-towards it, in closed form, and what is left, which vanishes there, by the rule over the face.
+Tractions q(d) give friction's wrench as in `wrench`: q and its gradient at the centre of rotation, or at the rim
+towards it, in closed form; the rest, which vanishes there, by the rule over the face.
 """
 
 from __future__ import annotations
@@ -19,17 +19,19 @@ import math
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from particle.body.face import Face
 from particle.body.wrench import FAR, fill_wrenches
 from particle.friction import FrictionLaw, pressures, rule_for, spread_of
 from particle.jit import device_no_arrays, jit
-from particle.records import Record, record_type
+from particle.records import Record
 from particle.types import FloatArray
 
-TURNS, HALVINGS, SETTLED = 100, 40, 1e-9  # steps of Newton, halvings of one, roughnesses: the next would be the square
-LONGEST, FASTER = 0.5, 0.1  # roughnesses, the longest step, and of the tilt, what it may be longer by
-STABLE, FLATTER = 1e-9, 1e-3  # of the largest stiffness: from where on the least is positive, what it is made if not
+TURNS, HALVINGS = 100, 40  # Newton's steps, and halvings of one
+SETTLED = 1e-9  # roughnesses, the last step: the next would be its square
+LONGEST, FASTER = 0.5, 0.1  # the longest step: roughnesses, and a share of the tilt to add
+STABLE, FLATTER = 1e-9, 1e-3  # of the largest stiffness: the least counts as positive above, and is raised to, these
 OPEN = 12.0  # roughnesses, from where on no asperity touches
 CLOSED = 1.0  # roughnesses, the least gap from which the search begins
 PULLS = 20  # halvings for the pull that ends contact
@@ -40,7 +42,7 @@ class Press(Record):
 
     bend: Annotated[FloatArray, 3]  # xx, xy and yy of H [1/m]
     gap: Annotated[FloatArray, 3]  # z and t of the last gap that bore its load [roughnesses]
-    give: Annotated[FloatArray, 3, 3]  # how it changes with the load [1/N], negative
+    give: Annotated[FloatArray, 3, 3]  # its derivatives by the load [1/N], negative definite
     stands: int  # 1 once a gap has borne a load
     trial: Annotated[FloatArray, 3]  # the gap looked at
     excess: Annotated[FloatArray, 3]  # the load less what it bears [N]
@@ -50,9 +52,6 @@ class Press(Record):
     closest: float  # roughnesses, the least gap under the face
     stability: float  # the least eigenvalue of the stiffness over the largest
     pulled: Annotated[FloatArray, 3]  # a load
-
-
-PRESS = record_type(Press)
 
 
 @device_no_arrays
@@ -105,14 +104,16 @@ def pull_to_end(law: FrictionLaw, face: Face, load: FloatArray, p: Press) -> flo
 
 
 @jit
-def gaps(law: FrictionLaw, face: Face, loads: FloatArray, bends: FloatArray, slips: FloatArray) -> FloatArray:
-    """The gap z, t, friction's wrench against a slip, and the pull to the end of contact; rows (n, 7), apart.
+def gaps(
+    law: FrictionLaw, face: Face, loads: FloatArray, bends: FloatArray, slips: FloatArray, scratch: NDArray[Press]
+) -> FloatArray:
+    """The gap z, t, friction's wrench against a slip, and the pull that ends contact, (n, 7), each found anew.
 
-    Under loads (N, M_1, M_2) (n, 3) on surfaces with xx, xy, yy of H (n, 3) against slips (n, 3); nan where contact has
-    ended.
+    Under loads (N, M_1, M_2) (n, 3) on surfaces with xx, xy, yy of H (n, 3) against slips (n, 3); nan where there is no
+    contact. scratch: (1,) a record of the kind that a path has.
     """
     out, wrenches, friction = np.full((len(loads), 7), np.nan), np.zeros((3, 3)), np.zeros((3, 4))
-    p = np.zeros(1, PRESS)[0]
+    p = scratch[0]
     for n in range(len(loads)):
         p.bend[:] = bends[n]
         p.stands = 0
@@ -265,7 +266,7 @@ def _fill_ridge(inverse: FloatArray, side: float, out: FloatArray) -> None:
 def fill_pressed_friction(
     law: FrictionLaw, face: Face, s_1: float, s_2: float, s_3: float, p: Press, wrenches: FloatArray, out: FloatArray
 ) -> None:
-    """Friction's wrench (f_1, f_2, tau) against the slip s at p.gap, and by what it changes with (N, M_1, M_2).
+    """Friction's wrench (f_1, f_2, tau) against the slip s at p.gap, and its derivatives by (N, M_1, M_2).
 
     out: (3, 4), the wrench in the first column. wrenches: (3, 3), scratch.
     """
@@ -309,7 +310,7 @@ def fill_pressed_friction(
 
 @device_no_arrays
 def _on_face(face: Face, x: float, y: float) -> tuple[float, float]:
-    """A place, or where the way to it from the middle leaves the face, or its hull."""
+    """A place, or where the line to it from the middle leaves the disc or the polygon's hull."""
     share = 1.0
     if face.radius > 0.0:
         share = min(share, face.radius / max(math.hypot(x, y), 1e-300))

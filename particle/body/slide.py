@@ -9,7 +9,7 @@ from particle.body.balance import energy_of, find_rates, powers, set_load, solve
 from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
 from particle.body.face import Face
 from particle.body.limit import gauge, needed, slip_rate
-from particle.body.memory import HEADING, LOSS, SPIN, STATE, V_X, V_Y, WORK, Memory, X, Y
+from particle.body.memory import HEADING, LOSS, SPIN, STATE, UNKNOWNS, V_X, V_Y, WORK, Memory, Step, X, Y
 from particle.body.state import base_at, contact_margin, end_reason, rim_margin, settle, slip_speed
 from particle.events import Request
 from particle.events.mechanics import Now
@@ -232,8 +232,10 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
                 for j in range(STAGES):
                     total += A[k, j] * step.rates[j, i]
                 step.steps[3 * k + i] = h * total - (stages[k, V_X + i] - state[V_X + i])
-        if stiff and not _newton(memory, h):
-            return False
+        if stiff:
+            if anew and not _factorise(step, h):
+                return False
+            _newton(step)
         largest = fastest = 0.0
         for k in range(STAGES):
             for i in range(3):
@@ -279,18 +281,50 @@ def _fill_turns(request: Request, face: Face, memory: Memory, k: int) -> bool:
 
 
 @inlined
-def _newton(memory: Memory, h: float) -> bool:
-    """Turn the stages' residuals memory.step[0].steps into Newton's steps."""
-    m = memory.step[0].system
+def _factorise(step: Step, h: float) -> bool:
+    """The matrix of Newton's steps into step.system as the product L U, with pivots; False where it is singular."""
+    m = step.system
     for k in range(STAGES):
         for i in range(3):
             row = 3 * k + i
             for j in range(STAGES):
                 for n in range(3):
-                    m[row, 3 * j + n] = -h * A[k, j] * memory.step[0].turns[j, i, n]
+                    m[row, 3 * j + n] = -h * A[k, j] * step.turns[j, i, n]
             m[row, row] += 1.0
-            m[row, 3 * STAGES] = memory.step[0].steps[row]
-    return solve(m, memory.step[0].steps)
+    for k in range(UNKNOWNS):
+        pivot = k
+        for i in range(k + 1, UNKNOWNS):
+            if abs(m[i, k]) > abs(m[pivot, k]):
+                pivot = i
+        step.pivots[k] = pivot
+        if m[pivot, k] == 0.0 or not math.isfinite(m[pivot, k]):
+            return False
+        if pivot != k:
+            for j in range(UNKNOWNS):
+                m[k, j], m[pivot, j] = m[pivot, j], m[k, j]
+        top = m[k, k + 1 :]
+        for i in range(k + 1, UNKNOWNS):
+            m[i, k] /= m[k, k]
+            factor, rest = m[i, k], m[i, k + 1 :]
+            for j in range(len(rest)):
+                rest[j] -= factor * top[j]
+    return True
+
+
+@inlined
+def _newton(step: Step) -> None:
+    """Turn the stages' residuals step.steps into Newton's steps, by step.system."""
+    m, out = step.system, step.steps
+    for k in range(UNKNOWNS):
+        pivot = int(step.pivots[k])
+        out[k], out[pivot] = out[pivot], out[k]
+    for k in range(1, UNKNOWNS):
+        for j in range(k):
+            out[k] -= m[k, j] * out[j]
+    for k in range(UNKNOWNS - 1, -1, -1):
+        for j in range(k + 1, UNKNOWNS):
+            out[k] -= m[k, j] * out[j]
+        out[k] /= m[k, k]
 
 
 @inlined

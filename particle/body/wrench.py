@@ -67,24 +67,19 @@ def fill_wrenches(face: Face, v_1: float, v_2: float, omega: float, out: FloatAr
 @device_no_arrays
 def _fill_far(rule: FloatArray, v_1: float, v_2: float, omega: float, out: FloatArray) -> None:
     """The same by a rule over the face, rows of x, y [m] and weights [m^2]."""
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = 0.0
+    a_1 = a_2 = a_3 = b_1 = b_2 = b_3 = c_1 = c_2 = c_3 = 0.0
     for k in range(len(rule)):
         x, y = rule[k, 0], rule[k, 1]
         u_1, u_2 = v_1 - omega * y, v_2 + omega * x
         weight = rule[k, 2] / math.sqrt(u_1 * u_1 + u_2 * u_2)
         f_1, f_2 = -weight * u_1, -weight * u_2
         torque = x * f_2 - y * f_1
-        out[0, 0] += f_1
-        out[1, 0] += f_2
-        out[2, 0] += torque
-        out[0, 1] += f_1 * x
-        out[1, 1] += f_2 * x
-        out[2, 1] += torque * x
-        out[0, 2] += f_1 * y
-        out[1, 2] += f_2 * y
-        out[2, 2] += torque * y
+        a_1, a_2, a_3 = a_1 + f_1, a_2 + f_2, a_3 + torque
+        b_1, b_2, b_3 = b_1 + f_1 * x, b_2 + f_2 * x, b_3 + torque * x
+        c_1, c_2, c_3 = c_1 + f_1 * y, c_2 + f_2 * y, c_3 + torque * y
+    out[0, 0], out[1, 0], out[2, 0] = a_1, a_2, a_3
+    out[0, 1], out[1, 1], out[2, 1] = b_1, b_2, b_3
+    out[0, 2], out[1, 2], out[2, 2] = c_1, c_2, c_3
 
 
 @device_no_arrays

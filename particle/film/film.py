@@ -26,7 +26,7 @@ class Layer(NamedTuple):
     """A film and the asperities in it, as kernels read it; means are over the face."""
 
     law: FrictionLaw  # of the asperities, point by point
-    bends: bool  # whether they meet the surface as it bends; else a flat one
+    bends: bool  # whether they meet the surface as it bends; else a flat one, under a gap that is uniform
     grips: bool  # whether they carry the friction; else the part's own law does, under their load
     closed: float  # roughnesses, the separation at the nearest point where the contact's law ends
     half: float  # m, of a side

@@ -14,6 +14,9 @@ and the gap follows from them and from the load N, which asperities and film bea
     N_c(z) + p_a A sum_i <psi_i> a_i = N,     sum_j <psi_i psi_j h> a_j = c_i - <psi_i h>.
 
 With its contents given the film is a stiff spring. Where it is stiffer than the asperities pull z is unique.
+
+Asperities that are not `bends` meet a flat surface. The gap then is uniform, offset + z sigma, but for the volume that
+the bending surface moves: -r.H r/2 counts in <psi_i h> alone.
 """
 
 from __future__ import annotations
@@ -78,7 +81,7 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     Where the load closes the gap or no gap is wide enough g.verdict says so.
     """
     over = _highest(layer, g)
-    lowest = max((over if layer.bends else 0.0) + layer.closed, over + LEAST - layer.offset / layer.law.roughness)
+    lowest = max(over + layer.closed, over + LEAST - layer.offset / layer.law.roughness)
     low, high, z, step = -math.inf, math.inf, max(g.z, lowest), 0.0
     net = net_slope = off = 0.0
     g.verdict = Verdict.GOES_ON
@@ -116,15 +119,16 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     g.slope += net_slope
     if g.near > FARTHEST:
         g.verdict = Verdict.DETACHED
-    g.width = layer.offset + g.z * layer.law.roughness - layer.half * layer.half * (g.xx + g.yy) / 6
+    g.width = layer.offset + g.z * layer.law.roughness
+    if layer.bends:
+        g.width -= layer.half * layer.half * (g.xx + g.yy) / 6
     g.limit = g.borne + (off + step) * g.borne_slope if layer.grips else friction_limit(law, g.load)
 
 
 @device_no_arrays
 def fill_gap_at_rest(layer: Layer, load: float, contents: FloatArray, g: Gap) -> None:
     """The contents c of a film at the pressure around, under a load [N], and z into `g`; g.verdict: there is none."""
-    over = _highest(layer, g)
-    top = over if layer.bends else 0.0
+    top = over = _highest(layer, g)
     low = z = max(top + layer.closed, over + LEAST - layer.offset / layer.law.roughness)
     g.verdict = Verdict.GOES_ON if _load_at(layer, z, g) >= load else Verdict.OVERLOADED
     while g.verdict == Verdict.GOES_ON and _load_at(layer, z, g) > load:
@@ -159,7 +163,9 @@ def fill_flow(layer: Layer, g: Gap, rate: FloatArray) -> None:
             p += g.excess[i] * values[i]
             p_x += g.excess[i] * slopes[0, i]
             p_y += g.excess[i] * slopes[1, i]
-        p, h = max(p, THIN), middle - place[0] * g.xx - place[1] * g.xy - place[2] * g.yy
+        p, h = max(p, THIN), middle
+        if layer.bends:
+            h -= place[0] * g.xx + place[1] * g.xy + place[2] * g.yy
         flow = place[3] * unit * h * h * h * p * (1.0 + layer.rarefied * (p * h) ** -POWER)
         for i in range(FUNCTIONS):
             rate[i] -= flow * (slopes[0, i] * p_x + slopes[1, i] * p_y)
@@ -187,14 +193,18 @@ def _quadratic(layer: Layer, rise: float, xx: float, xy: float, yy: float, g: Ga
     total, m = 0.0, layer.products
     for i in range(FUNCTIONS):
         for j in range(FUNCTIONS):
-            mean = m[0, i, j] * rise - m[1, i, j] * xx - m[2, i, j] * xy - m[3, i, j] * yy
+            mean = m[0, i, j] * rise
+            if layer.bends:
+                mean -= m[1, i, j] * xx + m[2, i, j] * xy + m[3, i, j] * yy
             total += g.excess[i] * g.excess[j] * mean
     return total
 
 
 @device_no_arrays
 def _highest(layer: Layer, g: Gap) -> float:
-    """The most that the surface rises over its middle within the face, in roughnesses."""
+    """The most that the surface rises over its middle within the face, in roughnesses; 0 where it counts as flat."""
+    if not layer.bends:
+        return 0.0
     xx, xy, yy = g.xx, abs(g.xy), g.yy
     most = max(xx + yy + 2 * xy, 0.0)  # at a corner, in the middle, and below along a side
     if yy < 0.0 and xy < -yy:
@@ -241,7 +251,9 @@ def _fill_film(layer: Layer, contents: FloatArray, z: float, g: Gap) -> None:
     middle = layer.offset + z * roughness
     for i in range(FUNCTIONS):
         for j in range(i + 1):
-            m[i, j] = c[0, i, j] * middle - c[1, i, j] * g.xx - c[2, i, j] * g.xy - c[3, i, j] * g.yy
+            m[i, j] = c[0, i, j] * middle
+            if layer.bends:
+                m[i, j] -= c[1, i, j] * g.xx + c[2, i, j] * g.xy + c[3, i, j] * g.yy
         for j in range(i + 1):  # Cholesky's factors
             for k in range(j):
                 m[i, j] -= m[i, k] * m[j, k]

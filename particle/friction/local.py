@@ -41,8 +41,8 @@ class LocalContact:
 
     def __post_init__(self) -> None:
         if isinstance(self.size, Footprint):
-            seen = bool((self.size.even_rule(SIDES[0])[1] > 0).all())
-            refuse("LocalContact", [(seen, "size", "a footprint all of which its centroid sees", self.size.corners)])
+            seen, corners = self.size.star_shaped, self.size.corners.tolist()
+            refuse("LocalContact", [(seen, "size", "a footprint all of which its centroid sees", corners)])
         else:
             refuse("LocalContact", [(positive(self.size), "size", "a positive length in m", self.size)])
 

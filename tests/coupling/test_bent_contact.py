@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from coupling import Case, build_friction, run_case, warnings
+from coupling.advice import Setting, Trials
 from coupling.case import InputError
 from coupling.part import bent_under
+from coupling.run import build_scene
 from particle import polynomial_surface
 
 CASE = {
@@ -17,6 +19,15 @@ CASE = {
     "run": {"duration": "1 ms"},
 }
 PATH = SimpleNamespace(position=np.array([[0.0, 0.0], [1e-4, 0.0]]), time=np.array([0.0, 1e-3]))
+U = [(0, 0), (9, 0), (9, 9), (6, 9), (6, 3), (3, 3), (3, 9), (0, 9)]
+U_SHAPE = {
+    "footprint": "polygon",
+    "corners": [[f"{10 * x} um", f"{10 * y} um"] for x, y in U],
+    "thickness": "50 um",
+    "mass": "2e-9 kg",
+    "position": ["0 um", "0 um"],
+    "local_contact": True,
+}
 POINT = SimpleNamespace(**vars(PATH), heading=None)
 EVERYWHERE = SimpleNamespace(gap=lambda places: np.ones(len(places)))
 
@@ -124,8 +135,18 @@ def test_a_face_s_run_follows_the_local_law_with_margins_of_its_own():
         ({"friction": {"model": "coulomb", "coefficient": 0.1}}, "part.local_contact of Case must be false with model"),
         ({"run": {"duration": "1 ms", "scheme": "paper"}}, "run.scheme of Case must be"),
         ({"friction": CASE["friction"] | {"contact_area": "9e3 um^2"}}, "contact_area of Case must not be given with"),
+        ({"part": U_SHAPE}, "part.corners of Case must outline a face all of which its centroid sees"),
     ],
 )
 def test_what_a_local_contact_does_not_go_with_is_refused(tables, words):
     with pytest.raises(InputError, match=words):
         Case.model_validate(CASE | {"part": CASE["part"] | {"local_contact": True}} | tables)
+    Case.model_validate(CASE | {"part": U_SHAPE | {"local_contact": False}})
+
+
+def test_trials_of_another_rough_contact_keep_the_area_of_the_face():
+    face = {"footprint": "rectangle", "sides": ["200 um", "60 um"], "thickness": "1 um"}
+    case = Case.model_validate(CASE | {"part": face | {"mass": "2e-9 kg", "position": ["0 um", "0 um"]}})
+    still = SimpleNamespace(outcome="stuck", distance=0.0)
+    trials = Trials(SimpleNamespace(case=case, scene=build_scene(case), trajectory=still), 1.0)
+    assert trials.law(Setting(plasticity=6.0)).contact_area == pytest.approx(1.2e-8)

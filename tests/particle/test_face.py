@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import root
+from spring_body import frame
 
 from particle import Footprint, KogutEtsion
 
@@ -100,6 +101,18 @@ def test_footprints():
         places, weights = footprint.rule(8)
         assert weights.sum() == pytest.approx(1) and weights @ places == pytest.approx([0, 0], abs=1e-14)
         assert (places.T * weights) @ places == pytest.approx(footprint.second_moments)
+
+
+@pytest.mark.parametrize("wall", [0.05, 0.02, 0.003])
+def test_averages_over_a_thin_frame_are_exact(wall):
+    """The frame is a square less a smaller one, and a slit that has no width."""
+    places, weights = Footprint.polygon(frame(0.5, wall, 1e-12)).averaging(6)
+    x, y = places.T
+    inner = 1 - 2 * wall
+    for i, j in ((2, 0), (0, 4), (4, 4), (10, 0)):
+        wanted = (1 - inner ** (i + j + 2)) / ((i + 1) * (j + 1) * 2 ** (i + j)) / (1 - inner**2)
+        assert weights @ (x**i * y**j) == pytest.approx(wanted, rel=1e-9)
+    assert np.abs(weights).sum() < 10
 
 
 def test_feet_on_one_line_are_apart():

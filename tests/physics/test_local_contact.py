@@ -18,9 +18,11 @@ from particle import (
     simulate,
     simulate_many,
 )
+from particle.body.balance import Balance
 from particle.body.press import gaps
 from particle.friction.contact import ScaledFriction
 from particle.friction.local import LocalContact
+from particle.records import new_records
 
 SIZE, MASS = 100e-6, 2e-9
 STILL = Drive(0.0, 100.0)
@@ -85,6 +87,17 @@ def test_threads_bits_and_bodies(local):
     assert all(path.events and path.heading[-1] != 0.3 for path in one)
 
 
+def test_moments_between_rows_do_not_depend_on_those_asked_for_with_them():
+    """On a saddle, where there are two tilts under one load."""
+    face = Footprint.rectangle(2 * SIZE, SIZE / 2)
+    surface = bent(20.0, -20.0, Drive(10e-6, 1000.0, cycle="sine"))
+    body = Body(face, 20e-6, MASS, position=(0.0, 0.0), heading=0.3)
+    path = simulate(surface, body, LocalContact(KogutEtsion.paper(), face), 2e-3)
+    times = np.linspace(0.1e-3, 1.9e-3, 12)
+    alone = [path.at([time]).position[0] for time in times]
+    assert path.at(times).position == pytest.approx(np.array(alone), abs=1e-20)
+
+
 def test_what_does_not_go_together_is_refused(local):
     surface, face = bent(-80.0, -20.0), Footprint.rectangle(SIZE, SIZE)
     body = Body(face, 50e-6, MASS, position=(0.0, 0.0))
@@ -122,7 +135,8 @@ def test_a_gap_bears_its_load_and_moments_at_least_potential_and_gives_the_frict
         law.pull_off * generator.uniform([-0.1, -0.03, -0.03], [0.5, 0.03, 0.03], (12, 3)) * [1, face.reach, face.reach]
     )
     slips = np.column_stack([generator.normal(size=(12, 2)), generator.normal(size=12) / face.reach])
-    found = gaps(law.law, Body(face, 5e-5, MASS, position=(0.0, 0.0)).face(3, True), loads, bends, slips)
+    one = Body(face, 5e-5, MASS, position=(0.0, 0.0)).face(3, True)
+    found = gaps(law.law, one, loads, bends, slips, new_records(Balance))
     assert np.isfinite(found).all()
     places, weights = face.rule(30)
     x, y = places.T
