@@ -59,7 +59,8 @@ class Memory(NamedTuple):
 def new_memory(surface: Surface, stop: IntArray) -> Memory:
     """Scratch memory that fits the surface."""
     gap = new_records(Gap, STAGES + 2)
-    gap["at"] = np.nan  # nothing is known yet
+    for each in gap:
+        each.at = np.nan  # nothing is known yet
     return Memory(
         local=new_local(surface),
         gap=gap,

@@ -171,7 +171,7 @@ def test_a_part_comes_off_where_air_is_too_thin_to_hold_it():
     path = simulate(surface, PART, TABLE_1, 3e-3, film=thin)
     assert path.outcome is free.outcome is Outcome.DETACHED
     assert path.time[-1] == pytest.approx(free.time[-1], abs=1e-3 * STROKE)
-    at = simulate(strokes(0.0), PART, TABLE_1, 1e-3, gravity=(0, 0, 2e3), film=FILM)
+    at = simulate(surface, PART, TABLE_1, 1e-3, gravity=(0, 0, 2e3), film=FILM)
     assert (at.outcome, at.time[-1]) == (Outcome.DETACHED, 0.0)
 
 
