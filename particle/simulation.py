@@ -15,8 +15,7 @@ from particle.events import FIRST_STEP, Part, Request
 from particle.film import Film, find_film_path, unscaled
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.footprint import Footprint
-from particle.friction import LOCAL, Contact, FrictionLaw, ScaledFriction
-from particle.friction.local import LocalContact
+from particle.friction import LOCAL, Contact, FrictionLaw, LocalContact, ScaledFriction
 from particle.interrupt import Stopped, stop_flag
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps

@@ -1,6 +1,8 @@
 """A part with a face: a rigid body that slides, turns and tips on the moving surface."""
 
+from particle.body.balance import solve
 from particle.body.body import Body
+from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
 from particle.body.contact import face_states
 from particle.body.face import Face
 from particle.body.march import march_body

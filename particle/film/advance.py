@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from particle.body.collocation import ORDER, STAGES
+from particle.body import ORDER, STAGES
 from particle.events import Request
 from particle.events.mechanics import Now
 from particle.film.film import Layer

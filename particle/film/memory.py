@@ -7,7 +7,7 @@ from typing import Annotated, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.body.collocation import STAGES
+from particle.body import STAGES
 from particle.events import Row
 from particle.events.mechanics import Counts, Now
 from particle.film.film import FUNCTIONS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from particle.body.collocation import STAGES
+from particle.body import STAGES
 from particle.events import FIRST_STEP, Request
 from particle.events.mechanics import Now, RestPull, at_contact, first_slip, mobility, over_plane, pull, rest_pull
 from particle.events.sliding import Stop, frozen_stop

@@ -12,8 +12,7 @@ import math
 
 import numpy as np
 
-from particle.body.balance import solve
-from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A
+from particle.body import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A, solve
 from particle.events import Request
 from particle.film.film import Layer
 from particle.film.gap import pumped
