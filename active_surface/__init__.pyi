@@ -54,6 +54,8 @@ from particle import (
     Event as Event,
     EventKind as EventKind,
     FaceLaw as FaceLaw,
+    Film as Film,
+    FilmEnergy as FilmEnergy,
     Footprint as Footprint,
     FrictionTable as FrictionTable,
     HermiteDrive as HermiteDrive,

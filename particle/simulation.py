@@ -157,7 +157,7 @@ def path_of(
     request: Request,
     tolerance: float,
     after_tipping: str,
-    stop: IntArray,
+    stop: IntArray | None,
 ) -> Trajectory | None:
     """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1."""
     if isinstance(part, Micropart) and part.film is not None:

@@ -2,6 +2,7 @@
 
 from particle.body.balance import Balance, least_pressure
 from particle.body.body import Body
+from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, ORDER, STAGES, A
 from particle.body.contact import face_states
 from particle.body.face import Face
 from particle.body.limit import Search

@@ -20,7 +20,7 @@ linear around a load, so that u follows from a 3 x 3 system, again until the loa
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from particle.body.averages import AT, BY, BY_BY, BY_T, PLACE, ROWS, TT, X_BY, XT, XX, XY, Y_BY, YT, YY, T, X, Y
 from particle.body.face import Face

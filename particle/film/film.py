@@ -11,9 +11,7 @@ import numpy as np
 
 from particle.air import POWER, RAREFIED, Air
 from particle.checks import positive, refuse
-from particle.friction import Contact, FrictionLaw, ScaledFriction
-from particle.friction.kogut_etsion import KogutEtsion
-from particle.friction.local import LocalContact
+from particle.friction import Contact, FrictionLaw, KogutEtsion, LocalContact, ScaledFriction
 from particle.types import FloatArray
 
 FUNCTIONS: Final = 5  # of the pressure

@@ -7,7 +7,7 @@ from typing import Annotated, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.body.collocation import STAGES
+from particle.body import STAGES
 from particle.events import Row
 from particle.events.mechanics import Counts, Now
 from particle.film.film import FUNCTIONS
@@ -59,7 +59,8 @@ class Memory(NamedTuple):
 def new_memory(surface: Surface, stop: IntArray) -> Memory:
     """Scratch memory that fits the surface."""
     gap = new_records(Gap, STAGES + 2)
-    gap["at"] = np.nan  # nothing is known yet
+    for each in gap:
+        each.at = np.nan  # nothing is known yet
     return Memory(
         local=new_local(surface),
         gap=gap,

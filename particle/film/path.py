@@ -10,9 +10,7 @@ from particle.events import Request, contact_states, new_record
 from particle.film.film import Film
 from particle.film.march import march_film
 from particle.film.memory import HEAT, PUMPED, STATE, STORED, V_X, V_Y, X, Y, Z, new_memory
-from particle.film.state import drag_of
-from particle.friction import Contact
-from particle.friction.contact import ConstantFriction
+from particle.friction import ConstantFriction, Contact
 from particle.modes import Verdict
 from particle.path import Computed, Rows, computed_of, seen, trajectory_of, with_cells
 from particle.surface import Surface, SurfaceMotion
@@ -67,7 +65,7 @@ def find_film_path(
         height = surface.half_thickness
         points = surface.samples(np.column_stack([rows["x"], rows["y"]]), np.ascontiguousarray(rows["time"]))
         part = request.part._replace(law=ConstantFriction(0.0).law)
-        drags = np.array([drag_of(layer, gap) for gap in rows["gap"].tolist()])
+        drags = np.array([film.air.drag(film.size**2, gap) for gap in rows["gap"].tolist()])
         return contact_states(points, part, height, height + request.centre_height, rows, drags)
 
     trajectory = trajectory_of(surface, request, computed, sampler, contact, film=True)

@@ -9,11 +9,11 @@ step's begin. With A^-1 = T L T^-1 its equations fall apart into one for each of
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from particle.body.balance import solve
-from particle.body.collocation import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A
+from particle.body import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A
 from particle.events import Request
 from particle.film.film import Layer
 from particle.film.gap import pumped
@@ -125,7 +125,7 @@ def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
             m[i, n] = 0.0
             for k in range(STAGES):
                 m[i, n] += FROM[root, k] * step.residuals[k, first + i]
-        if not solve(m[:n, : n + 1], ahead[:n]):
+        if not _eliminate(m[:n, : n + 1], ahead[:n]):
             return math.inf
         for k in range(STAGES):
             for i in range(n):
@@ -136,6 +136,33 @@ def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
             stages[k, i] += step.changes[k, i]
             largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, layer, i))
     return largest
+
+
+@device_no_arrays
+def _eliminate(m: Any, out: Any) -> bool:
+    """Solve the real or complex system (n, n + 1) by elimination with pivots, in place; False where it is singular."""
+    n = len(m)
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(m[i, k]) > abs(m[pivot, k]):
+                pivot = i
+        if not 0.0 < abs(m[pivot, k]) < math.inf:
+            return False
+        if pivot != k:
+            for j in range(k, n + 1):
+                m[k, j], m[pivot, j] = m[pivot, j], m[k, j]
+        for i in range(k + 1, n):
+            factor = m[i, k] / m[k, k]
+            if factor != 0.0:
+                for j in range(k + 1, n + 1):
+                    m[i, j] -= factor * m[k, j]
+    for k in range(n - 1, -1, -1):
+        total = m[k, n]
+        for j in range(k + 1, n):
+            total -= m[k, j] * out[j]
+        out[k] = total / m[k, k]
+    return True
 
 
 @device_no_arrays
@@ -195,7 +222,7 @@ def error_of(surface: Surface, request: Request, layer: Layer, memory: Memory, h
         m[i, n] *= h
         for j in range(n):
             m[i, j] = (1.0 if i == j else 0.0) - h * AT_START * step.turns[first + i, first + j]
-    if not solve(m[:n, : n + 1], step.off[:n]):
+    if not _eliminate(m[:n, : n + 1], step.off[:n]):
         return math.inf
     total = 0.0
     for i in range(n):

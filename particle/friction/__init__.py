@@ -2,6 +2,7 @@
 
 from particle.friction.contact import (
     LOCAL,
+    ConstantFriction,
     Contact,
     FrictionLaw,
     ScaledFriction,
@@ -10,3 +11,5 @@ from particle.friction.contact import (
     friction_slope,
 )
 from particle.friction.grip import Grip, grip, pressures, rule_for, spread_of, sums
+from particle.friction.kogut_etsion import KogutEtsion
+from particle.friction.local import LocalContact

@@ -173,7 +173,7 @@ def test_a_part_comes_off_where_air_is_too_thin_to_hold_it():
     path = simulate(surface, replace(PART, film=thin), TABLE_1, 3e-3)
     assert path.outcome is free.outcome is Outcome.DETACHED
     assert path.time[-1] == pytest.approx(free.time[-1], abs=1e-3 * STROKE)
-    at = simulate(strokes(0.0), ON_FILM, TABLE_1, 1e-3, gravity=(0, 0, 2e3))
+    at = simulate(surface, ON_FILM, TABLE_1, 1e-3, gravity=(0, 0, 2e3))
     assert (at.outcome, at.time[-1]) == (Outcome.DETACHED, 0.0)
 
 

@@ -10,7 +10,7 @@ import math
 
 from particle.events.flight.ballistics import centre_velocity, from_centre_velocity
 from particle.events.mechanics import Motion, Part, after_friction, by_centre, normal_rate, of_centre, rising, stretched
-from particle.jit import device, inlined
+from particle.jit import device, device_no_arrays, inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
 
@@ -48,7 +48,7 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     return Mode.SLIDING if slides else Mode.RESTING
 
 
-@inlined
+@device_no_arrays
 def velocity_jump(before: SurfacePoint, after: SurfacePoint, part: Part) -> float:
     """By how much the velocity [m/s] of a part at rest on the surface jumps."""
     x, y, z = after.base_vx - before.base_vx, after.base_vy - before.base_vy, after.w_t - before.w_t
