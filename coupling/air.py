@@ -44,6 +44,7 @@ class AirFigures:
     settle_time: float | None  # s; None: nothing presses it down
     drag_rate: float  # 1/s
     velocity_change: float  # m/s, the largest of the surface's vertical velocity under the part
+    sag_over_gap: float  # the plate's largest under the part, over that gap
     included: str  # in the path: "nothing", "drag", or with a "film" its load and drag
     largest_gap: float | None  # m, the mean under the part in the path with a film; else None, as is the next
     film_balance: float | None  # the largest gap in the film's energy ledger over the largest of its entries
@@ -61,7 +62,7 @@ def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Cont
     stiffness = _stiffness(rough, separation)
     frequency = None if scene.fits else fastest(scene.lifts)
     share = None if frequency is None else 2 * math.pi * frequency * damping / stiffness
-    bends, velocity = _changes(scene, trajectory)
+    bends, velocity, curvature = _changes(scene, trajectory)
     pull_off = friction.pull_off if math.isfinite(friction.pull_off) else rough.pull_off
     pumped = stiffness * footprint.torsion[1] * bends / max(weight + pull_off, 1e-9 * pull_off)
     return AirFigures(
@@ -75,6 +76,7 @@ def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Cont
         settle_time=impulse / weight if weight > 0 else None,
         drag_rate=air.drag(footprint.area, gap) / mass,
         velocity_change=velocity,
+        sag_over_gap=0.5 * curvature * footprint.reach**2 / gap,
         included="nothing" if case.air is None or air.pressure == 0 else "film" if case.air.film else "drag",
         largest_gap=None if trajectory.gap is None else float(trajectory.gap.max()),
         film_balance=None if trajectory.film_energy is None else trajectory.film_energy.balance,
@@ -87,8 +89,8 @@ def _stiffness(rough: KogutEtsion, separation: float) -> float:
     return float(closer - farther) / (2 * STEP * rough.roughness)
 
 
-def _changes(scene: Scene, trajectory: Trajectory) -> tuple[float, float]:
-    """The largest changes, along the path, of lap w [1/m] and w_t [m/s] under the part."""
+def _changes(scene: Scene, trajectory: Trajectory) -> tuple[float, float, float]:
+    """The largest changes, along the path, of lap w [1/m] and w_t [m/s] under the part; the largest curvature [1/m]."""
     rows = np.unique(np.linspace(0, len(trajectory.time) - 1, ROWS).astype(int))
     places, times = trajectory.position[rows], trajectory.time[rows]
     if isinstance(scene, PlateScene):
@@ -96,4 +98,4 @@ def _changes(scene: Scene, trajectory: Trajectory) -> tuple[float, float]:
         places, times = places[on_plate], times[on_plate]
     state = scene.surface.evaluate_along(places, times)
     bend = np.trace(state.hessian, axis1=1, axis2=2)
-    return float(np.ptp(bend)), float(np.ptp(state.w_t))
+    return float(np.ptp(bend)), float(np.ptp(state.w_t)), float(np.abs(np.linalg.eigvalsh(state.hessian)).max())

@@ -124,7 +124,15 @@ def _of_contact(s: Summary) -> Iterator[str]:
 
 def _of_air(s: Summary) -> Iterator[str]:
     air = s.air
-    if air is None or air.included == "film":
+    if air is None:
+        return
+    if air.included == "film":
+        if air.sag_over_gap > FLAT and not (isinstance(s, PlateSummary) and s.local_contact):
+            yield (
+                f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, which is "
+                f"taken as uniform: that holds up to about {FLAT}. A rough contact with local_contact = true follows "
+                "the bend."
+            )
         return
     at, face = f"At {quantity(air.pressure, 'Pa', 4)} ", s.turned is not None
     if air.load_share is not None and air.load_share > MAX_AIR:

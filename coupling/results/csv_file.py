@@ -15,6 +15,7 @@ from particle import KogutEtsion, Samples, State, Trajectory
 
 HEADER = "time [s],x [m],y [m],z [m],vx [m/s],vy [m/s],state,normal force [N],friction force [N]"
 FACE = {"heading": "heading [rad]", "spin": "spin [rad/s]", "pressure_margin": "pressure margin"}
+FILM = {"gap": "gap [m]", "air_force": "air force [N]"}
 VECTORS = {"contact": "m", "centre": "m", "normal": "1", "friction": "N"}
 ROUGH = {"separation": "separation [roughness]", "contact_load": "contact load [N]", "adhesion": "adhesion [N]"}
 
@@ -29,7 +30,8 @@ def write_csv(
     """Write a trajectory at given times and its events, or at all its rows, as CSV.
 
     Each time comes once, at an event with the values from then on. Reading the numbers gives the same floats. The
-    state is stick, slip or flight. A part with a face adds its heading, spin and pressure margin.
+    state is stick, slip or flight. A part with a face adds its heading, spin and pressure margin, one on a film
+    of air the mean gap and the film's force.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def columns_of(samples: Samples) -> dict[str, NDArray[Any]]:
     words = np.array([State(state).name.lower() for state in samples.state.tolist()])
     columns = (samples.time, *samples.position.T, samples.height, *samples.velocity.T, words)
     forces = samples.normal_force, samples.friction_force
-    face = {label: values for name, label in FACE.items() if (values := getattr(samples, name)) is not None}
+    face = {label: values for name, label in (FACE | FILM).items() if (values := getattr(samples, name)) is not None}
     return dict(zip(HEADER.split(","), (*columns, *forces), strict=True)) | face
 
 
@@ -101,4 +103,5 @@ def is_trajectory(path: Path) -> bool:
     """Whether `write_csv` wrote a file."""
     with path.open(encoding="utf-8", errors="replace") as file:
         header = file.readline().rstrip("\n")
-    return header == HEADER or header.startswith((f"{HEADER},contact x [m],", f"{HEADER},{','.join(FACE.values())}"))
+    further = ("contact x [m],", *(",".join(names.values()) for names in (FACE, FILM)))
+    return header == HEADER or header.startswith(tuple(f"{HEADER},{names}" for names in further))

@@ -53,6 +53,8 @@ UNITS = {
     "heading": "rad, counter-clockwise, of a part with a face",
     "spin": "rad/s",
     "pressure_margin": "1, least pressure under the face over the mean",
+    "gap": "m, the mean under a part on a film of air",
+    "air_force": "N, of the film, a share of the normal force",
     "state": "0: stuck, 1: slipping, 2: flying",
 }
 
@@ -161,6 +163,8 @@ def _part_steps(result: Result, times: FloatArray, forces: bool) -> tuple[FloatA
         "friction_force": samples.friction_force,
         **(_contact_fields(trajectory, times, _rough(result)) if forces else {}),
     }
+    if samples.gap is not None and samples.air_force is not None:
+        fields |= {"gap": samples.gap, "air_force": samples.air_force}
     position = np.column_stack([onto_surface(result.scene, samples.position), samples.height])
     if face is not None and samples.heading is not None:
         fields |= {name: getattr(samples, name) for name in ("heading", "spin", "pressure_margin")}

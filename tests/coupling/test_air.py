@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from coupling import Case, PlateSummary, Summary, read_run, run_case, warnings
+from active_surface.studies.feasibility import feasibility
+from coupling import Case, PlateSummary, Summary, read_run, run_case, run_cases, warnings
 from coupling.air import AirFigures
 from coupling.case import InputError
 from coupling.report import lines
@@ -62,7 +63,7 @@ def test_the_figures_of_a_part_of_the_reference(shaken: Summary) -> None:
 
 
 def test_a_plate_that_bends_breathes() -> None:
-    """Beta by the definition, from the plate's own change of curvature."""
+    """Beta by the definition, from the plate's own change of curvature, on contact that the adhesion pulls off."""
     actuators = [{"position": ["0 um", "0 um"], "stroke": "2 um", "frequency": "2 kHz", "cycles": 3}]
     part = {"mass": "2e-9 kg", "position": ["300 um", "200 um"], "size": "95 um"}
     friction = {"model": "coulomb", "coefficient": 0.1, "adhesion": "1.5 uN"}
@@ -71,7 +72,7 @@ def test_a_plate_that_bends_breathes() -> None:
     air, surface = air_of(result.summary), result.surface
     path = result.trajectory
     bends = surface.evaluate_along(path.position, path.time).hessian.trace(axis1=1, axis2=2)
-    stiffness = 1340.28 * 0.95**2
+    stiffness = 1340.28 * 1.5e-6 / 3.71602e-6  # that of the reference has 3.716 uN
     share = air.load_share
     assert share is not None
     pumped = stiffness * 0.0262 * (95e-6) ** 2 * (bends.max() - bends.min()) / (2e-9 * G + 1.5e-6)
@@ -150,3 +151,70 @@ def test_a_part_without_a_size_has_no_figures_of_air() -> None:
     summary = run_case(case(part=part, friction={"model": "constant", "limit": "5 nN"})).summary
     assert summary.air is None
     assert not isinstance(summary, PlateSummary)
+
+
+FILM = {"air": {"film": True}}
+
+
+@pytest.mark.compiled
+def test_a_film_bears_load_and_is_in_the_summary_and_the_files(tmp_path: Any) -> None:
+    result = run_case(case(**FILM), tmp_path, csv=True)
+    air = air_of(result.summary)
+    assert (air.included, result.summary.margins.contact, result.summary.thresholds) == ("film", None, None)
+    assert air.largest_gap is not None
+    assert air.largest_gap > air.gap
+    assert air.film_balance is not None
+    assert air.film_balance < 1e-6
+    assert not [text for text in warnings(result.summary) if "film of air" in text]
+    said = str(lines(result.summary, verbose=True))
+    assert "the film of air opens to" in said
+    assert "a film carries part of the load" in said
+    header, *rows = (tmp_path / "case.csv").read_text().splitlines()
+    assert header.endswith("gap [m],air force [N]")
+    assert float(rows[-1].split(",")[-2]) == result.trajectory.gap[-1]  # type: ignore[index]
+    saved = read_run(tmp_path / "case")
+    assert saved.case.air == case(**FILM).air
+
+
+@pytest.mark.compiled
+def test_a_film_that_counts_as_flat_under_a_plate_that_sags_is_warned_of() -> None:
+    bent = replace(air_of(run_case(case(**FILM)).summary), sag_over_gap=0.5)
+    summary = replace(run_case(case(**FILM)).summary, air=bent)
+    assert "sags under the part by up to 0.5 times the gap of the film" in " ".join(warnings(summary))
+
+
+@pytest.mark.compiled
+def test_thin_air_under_a_film_is_a_path_without_air_in_a_sweep_over_the_pressure() -> None:
+    motion = {"z": {"stroke": "5 um", "frequency": "1 kHz", "cycle": "sine"}}
+    shaken = {"plate": {"shape": "platform", "motion": motion}}
+    shaken |= {"friction": {"model": "coulomb", "coefficient": 0.05, "adhesion": "0.5 uN"}}
+    free = case(air={"pressure": "0 Pa"}, **shaken)
+    cases = [free, *(case(**shaken, **FILM).vary({"air.pressure": value}) for value in (1.0, 101325.0))]
+    way, thin, dense = (result.summary.distance for result in run_cases(cases))
+    assert thin == pytest.approx(way, rel=1e-3)
+    assert abs(dense - way) > 0.02 * way
+
+
+FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radius": "50 um", "thickness": "50 um"}
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"air": {"film": True, "pressure": "0 Pa"}}, "air.film of Case must be false in a vacuum"),
+        ({**FILM, "part": FACE}, r"air.film of Case must be false with a footprint in .part.: only a point's square"),
+        (
+            {**FILM, "friction": {"model": "kogut-etsion", "contact_area": "2e4 um^2"}},
+            "contact_area of Case must not be given with a film of air and size in .part.",
+        ),
+    ],
+)
+def test_what_does_not_go_with_a_film_is_refused(tables: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        case(**tables)
+
+
+def test_what_leaves_a_film_out_says_so() -> None:
+    plate = {"plate": PLATE, "actuators": [{"position": ["0 um", "0 um"], "stroke": "1 um", "frequency": "1 kHz"}]}
+    with pytest.raises(ValueError, match="case of feasibility must have no film of air"):
+        feasibility(Case.model_validate(TABLES | plate | FILM))
