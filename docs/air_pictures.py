@@ -1,7 +1,11 @@
-"""Draws docs/air.png: how far parts go over the air's pressure, their bow and their size, with a film of air."""
+"""Draws docs/air.png: how far parts go over the air's pressure, their bow and their size, with a film of air.
+
+And prints the table of the quick start's plate under three views of the gap.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coupling import Case, build_friction, build_part, follow, read_case
-from coupling.batch import PathTask
-from coupling.run import build_scene
+from coupling import Case, PathTask, build_friction, build_part, build_surface, follow, read_case
+from particle import Air, Film, KogutEtsion, Micropart, simulate
+from particle.film.film import Layer
+from particle.friction import Contact
 
 PAGE = Path(__file__).parent
 MICRO, ROOM, SIZE = 1e6, 101325.0, 95e-6
@@ -51,7 +56,7 @@ DEVICES = {
 
 def ways(case: Case, changes: list[dict[str, Any]]) -> list[float]:
     """How far [m] the part goes in the direction that it takes in a vacuum, with each change."""
-    surface = build_scene(case).surface
+    surface = build_surface(case)
     cases = [case, *(case.vary({"air": {"film": True}}).vary(change) for change in changes)]
     paths = follow([PathTask(surface, build_part(one), build_friction(one), one.run) for one in cases])
     free, *moved = [path.position[-1] - path.position[0] for path in paths]
@@ -91,6 +96,42 @@ def draw() -> None:
     figure.savefig(PAGE / "air.png", dpi=100)
 
 
+class Bent(Film):
+    """A film over asperities that follow the bent surface, whatever the part's law."""
+
+    def layer(self, friction: Contact) -> Layer:
+        return super().layer(friction)._replace(bends=True)
+
+
+class Flat(Film):
+    """A film on a plate that does not bend under the part."""
+
+    def layer(self, friction: Contact) -> Layer:
+        layer = super().layer(friction)
+        means, products = layer.means.copy(), layer.products.copy()
+        means[1:] = products[1:] = 0.0
+        return layer._replace(means=means, products=products)
+
+
+def quick_start() -> None:
+    """Print the ways of a cube on the quick start's plate."""
+    drives = [{"position": ["0 um", "0 um"], "stroke": "10 um", "frequency": "2 kHz", "cycles": 40}]
+    part = {"mass": "2 ug", "size": SIZE, "centre_height": "45 um", "position": ["300 um", "200 um"]}
+    law = {"model": "coulomb", "coefficient": 0.1, "adhesion": "1.5 uN"}
+    case = Case(plate=GENTLE["plate"], actuators=drives, part=part, friction=law, run={"duration": "30 ms"})
+    surface, point, friction = build_surface(case), build_part(case), build_friction(case)
+    assert isinstance(point, Micropart)
+    start = np.array(case.part.position)
+    drag = Air().drag(SIZE**2, float(KogutEtsion().mean_gap(3.67)))
+    parts = {"vacuum": point, "drag": replace(point, drag=drag)}
+    airs = [Air(), *(Air(bow=bow / MICRO) for bow in (0.2, 0.5, 1.0)), Air(pressure=1000.0)]
+    films = [kind(air, SIZE) for air in airs for kind in (Film, Flat, Bent)]
+    parts |= {f"{type(film).__name__}, {film.air}": replace(point, film=film) for film in films}
+    for name, one in parts.items():
+        path = simulate(surface, one, friction, case.run.duration)
+        print(f"{name}: {(path.position[-1] - start) @ start / np.hypot(*start) * MICRO:.1f} um")
+
+
 def _label(axes: Axes, text: str, scale: str) -> None:
     axes.set_xscale(scale)
     axes.set_xlabel(text)
@@ -100,3 +141,4 @@ def _label(axes: Axes, text: str, scale: str) -> None:
 
 if __name__ == "__main__":
     draw()
+    quick_start()

@@ -7,8 +7,10 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from active_surface import Track, identify
 from active_surface.studies.feasibility import feasibility
 from coupling import Case, PlateSummary, Summary, read_run, run_case, run_cases, warnings
 from coupling.air import AirFigures
@@ -154,6 +156,10 @@ def test_a_part_without_a_size_has_no_figures_of_air() -> None:
 
 
 FILM = {"air": {"film": True}}
+SHAKEN: dict[str, Any] = {
+    "plate": {"shape": "platform", "motion": {"z": {"stroke": "5 um", "frequency": "1 kHz", "cycle": "sine"}}},
+    "friction": {"model": "coulomb", "coefficient": 0.05, "adhesion": "0.5 uN"},
+}
 
 
 @pytest.mark.compiled
@@ -185,14 +191,20 @@ def test_a_film_that_counts_as_flat_under_a_plate_that_sags_is_warned_of() -> No
 
 @pytest.mark.compiled
 def test_thin_air_under_a_film_is_a_path_without_air_in_a_sweep_over_the_pressure() -> None:
-    motion = {"z": {"stroke": "5 um", "frequency": "1 kHz", "cycle": "sine"}}
-    shaken = {"plate": {"shape": "platform", "motion": motion}}
-    shaken |= {"friction": {"model": "coulomb", "coefficient": 0.05, "adhesion": "0.5 uN"}}
-    free = case(air={"pressure": "0 Pa"}, **shaken)
-    cases = [free, *(case(**shaken, **FILM).vary({"air.pressure": value}) for value in (1.0, 101325.0))]
+    free = case(air={"pressure": "0 Pa"}, **SHAKEN)
+    cases = [free, *(case(**SHAKEN, **FILM).vary({"air.pressure": value}) for value in (1.0, 101325.0))]
     way, thin, dense = (result.summary.distance for result in run_cases(cases))
     assert thin == pytest.approx(way, rel=1e-3)
     assert abs(dense - way) > 0.02 * way
+
+
+@pytest.mark.compiled
+def test_a_bow_is_found_from_a_track() -> None:
+    made = case(**SHAKEN, air={"film": True, "bow": "0.3 um"})
+    times = np.linspace(0.1e-3, 1e-3, 10)
+    track = Track(times, run_case(made).trajectory.at(times).position)
+    found = identify(made.vary({"air.bow": 0.1e-6}), track, ["air.bow"], {"air.bow": ("0.05 um", "1 um")}, threads=1)
+    assert found.estimates[0].value == pytest.approx(0.3e-6, rel=1e-3)
 
 
 FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radius": "50 um", "thickness": "50 um"}

@@ -146,7 +146,7 @@ LATE = Track(np.array([0.1, 0.3]), np.zeros((2, 2)))
     ("words", "said"),
     [
         ({"free": ["part.sqeeze"]}, "free of identify .* did you mean squeeze"),
-        ({"free": ["run.duration"]}, "free of identify must be fields of .part. or .friction."),
+        ({"free": ["run.duration"]}, "free of identify must be fields of .part., .friction. or .air."),
         ({"free": ["part.position.0"]}, "bounds of part.position.0 of identify must be given"),
         ({"bounds": {"friction.coefficient": (3, 2)}}, "bounds of friction.coefficient .* must increase; got 3 and 2"),
         ({"bounds": {"friction.coefficient": ("a", "b")}}, "must be two plain numbers; got .a."),
