@@ -19,6 +19,7 @@ from particle.surface import Surface, gap_at
 ACROSS = 1e-6  # of a stroke: the most over which a film stays as it is where the gap jumps
 LOOKS = 6  # moments of a step at rest that are looked at
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-12
+FIRST_TRY = 1e-6  # of a stroke
 
 
 @inlined
@@ -43,6 +44,7 @@ def advance(surface: Surface, request: Request, layer: Layer, memory: Memory) ->
     step, last = memory.step[0], memory.gap[STAGES]
     begin_step(surface, request, layer, memory)
     remaining = now.span_end - now.time
+    now.h = max(now.h, FIRST_TRY * request.stroke_time)  # an event may have cut the last step to nothing
     now.h = remaining if now.h >= 0.9 * remaining else now.h
     while True:
         if now.h < MIN_STEP * request.stroke_time and now.h < remaining:
