@@ -16,8 +16,6 @@ from matplotlib.figure import Figure
 
 from coupling import Case, PathTask, build_friction, build_part, build_surface, follow, read_case
 from particle import Air, Film, KogutEtsion, Micropart, simulate
-from particle.film.film import Layer
-from particle.friction import Contact
 
 PAGE = Path(__file__).parent
 MICRO, ROOM, SIZE = 1e6, 101325.0, 95e-6
@@ -99,14 +97,14 @@ def draw() -> None:
 class Bent(Film):
     """A film over asperities that follow the bent surface, whatever the part's law."""
 
-    def layer(self, friction: Contact) -> Layer:
+    def layer(self, friction: Any) -> Any:
         return super().layer(friction)._replace(bends=True)
 
 
 class Flat(Film):
     """A film on a plate that does not bend under the part."""
 
-    def layer(self, friction: Contact) -> Layer:
+    def layer(self, friction: Any) -> Any:
         layer = super().layer(friction)
         means, products = layer.means.copy(), layer.products.copy()
         means[1:] = products[1:] = 0.0
