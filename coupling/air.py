@@ -21,9 +21,9 @@ import numpy as np
 
 from coupling.case import Case, KogutEtsionCase
 from coupling.drives import fastest
-from coupling.part import air_of, footprint_of, gap_under, resting_separation, rough_under, weight_of
+from coupling.part import air_of, build_part, footprint_of, gap_under, resting_separation, rough_under, weight_of
 from coupling.scene import PlateScene, Scene
-from particle import KogutEtsion, Trajectory
+from particle import KogutEtsion, Trajectory, simulate
 from particle.friction import Contact
 
 ROWS: Final = 4000  # of a path at which the surface is looked at
@@ -48,6 +48,8 @@ class AirFigures:
     included: str  # in the path: "nothing", "drag", or with a "film" its load and drag
     largest_gap: float | None  # m, the mean under the part in the path with a film; else None, as is the next
     film_balance: float | None  # the largest gap in the film's energy ledger over the largest of its entries
+    end_without: tuple[float, float] | None  # m, of a path without the film
+    outcome_without: str | None  # of that path
 
 
 def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> AirFigures | None:
@@ -64,14 +66,17 @@ def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Cont
     share = None if frequency is None else 2 * math.pi * frequency * damping / stiffness
     bends, velocity, curvature = _changes(scene, trajectory)
     pull_off = friction.pull_off if math.isfinite(friction.pull_off) else rough.pull_off
-    pumped = stiffness * footprint.torsion[1] * bends / max(weight + pull_off, 1e-9 * pull_off)
+    pumped = stiffness * footprint.torsion[1] * bends
+    without = _without_film(case, scene, friction) if trajectory.gap is not None else None
     return AirFigures(
         pressure=air.pressure,
         gap=gap,
         assumed=not isinstance(case.friction, KogutEtsionCase),
         frequency=frequency,
         load_share=share,
-        breathing=None if share is None else pumped * share / math.hypot(1, share),
+        breathing=None
+        if share is None or weight + pull_off <= 0
+        else pumped * share / math.hypot(1, share) / (weight + pull_off),
         escape_speed=impulse / mass,
         settle_time=impulse / weight if weight > 0 else None,
         drag_rate=air.drag(footprint.area, gap) / mass,
@@ -80,6 +85,8 @@ def air_figures(case: Case, scene: Scene, trajectory: Trajectory, friction: Cont
         included="nothing" if case.air is None or air.pressure == 0 else "film" if case.air.film else "drag",
         largest_gap=None if trajectory.gap is None else float(trajectory.gap.max()),
         film_balance=None if trajectory.film_energy is None else trajectory.film_energy.balance,
+        end_without=None if without is None else (float(without.position[-1, 0]), float(without.position[-1, 1])),
+        outcome_without=None if without is None else without.outcome.value,
     )
 
 
@@ -87,6 +94,20 @@ def _stiffness(rough: KogutEtsion, separation: float) -> float:
     """-dN/dh [N/m] at a separation [roughnesses]."""
     closer, farther = rough.net_load([separation - STEP, separation + STEP]).tolist()
     return float(closer - farther) / (2 * STEP * rough.roughness)
+
+
+def _without_film(case: Case, scene: Scene, friction: Contact) -> Trajectory:
+    """The path with the drag of the air alone."""
+    run, drags = case.run, case.vary({"air.film": False})
+    return simulate(
+        scene.surface,
+        build_part(drags),
+        friction,
+        run.duration,
+        run.gravity,
+        run.tolerance,
+        after_detachment=run.after_detachment,
+    )
 
 
 def _changes(scene: Scene, trajectory: Trajectory) -> tuple[float, float, float]:

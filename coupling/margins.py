@@ -26,7 +26,7 @@ from particle import (
     sample_times,
 )
 from particle.events import Part
-from particle.friction import Contact
+from particle.friction import LOCAL, Contact
 
 FloatArray = NDArray[np.float64]
 
@@ -50,8 +50,8 @@ class Margin:
 class Margins:
     """How near a part came to slipping and to coming off."""
 
-    slip: Margin | None  # largest pull on it over the friction limit while it was stuck; None: it never was
-    contact: Margin | None  # smallest (N + pull-off force) / scale while it touched; None: the law has no pull-off
+    slip: Margin | None  # largest pull on it over the friction limit while it was stuck; None: not known, or never so
+    contact: Margin | None  # smallest (N + pull-off force) / scale while it touched; None: no pull-off, or on a film
     pull_off: float | None  # N; None: the law has none
     scale: float  # N, the pull-off force or, where that is 0, the part's weight and squeeze
     smallest_load: float  # N, while it touched
@@ -77,7 +77,7 @@ def margins_of(scene: Scene, path: PathLoads) -> Margins:
     load = largest(lambda times: _or_least(-path.sampled(times)[1]), path.times, _or_least(-loads))
     if len(path.slips):
         slip = Extreme(1.0, float(path.slips[0]))  # also where a blow makes it slip
-    pull_off = math.inf if trajectory.gap is not None else path.part.law.pull_off  # on a film of air no part comes off
+    pull_off = math.inf if trajectory.gap is not None else path.part.law.pull_off  # a film bears what pulls beyond
     distance = Extreme((pull_off - load.value) / path.scale, load.time)
     loss = float(path.sampled(np.array([load.time]))[2][0])
     if off := [event.time for event in trajectory.events if event.kind is EventKind.DETACHES]:
@@ -138,17 +138,20 @@ class PathLoads:
     def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Pull over the friction limit, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
 
-        The load is that on a flat surface as far above pull-off, the third is what to add for the load itself.
+        The load, on a film of air that of the asperities, is as on a flat surface as far above pull-off; the third is
+        what to add for the load itself.
 
         A part that begins to slip counts as stuck at that moment.
         """
         samples = self.trajectory.contact_at(times)
         begins = (samples.state == State.SLIP) & np.isin(times, self.slips)
         stuck = (samples.state == State.STICK) | begins
-        loads = np.where(samples.state == State.FLIGHT, np.nan, samples.normal_force)
+        air = self.trajectory.at(times).air_force
+        own = samples.normal_force if air is None else samples.normal_force - air
+        loads = np.where(samples.state == State.FLIGHT, np.nan, own)
         ratios = np.full(len(times), np.nan)
-        if self.trajectory.gap is not None:
-            return ratios, loads, np.zeros(len(times))  # what friction gives on a film depends on the gap
+        if self.trajectory.gap is not None and self.part.law.kind == LOCAL:
+            return ratios, loads, np.zeros(len(times))  # what friction gives depends on the film's gap
         ratios[stuck] = pull_ratios(self.part, loads[stuck], self.part.mass * samples.pull[stuck])
         return ratios, loads - samples.bend_loss, samples.bend_loss
 

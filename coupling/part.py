@@ -158,13 +158,13 @@ def build_point(case: Case, position: tuple[float, float] | None = None) -> Micr
 def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float | None:
     """The largest shift of the centre of pressure over half the part's size, at some moments.
 
-    None: a point's size is not given, or a face has its own pressure.
+    None: a point's size is not given, a face has its own pressure, or a film of air bears load.
 
     Friction F on the face below a centre of mass at height h over it has the moment F h. What presses on the face, N +
     adhesion, takes it up by its shift s = F h / (N + adhesion); beyond s = size / 2 the part turns about its edge.
     Adhesion draws on the whole face alike, so it has no moment about its middle.
     """
-    if case.footprint is None or case.part.face is not None:
+    if case.footprint is None or case.part.face is not None or film_of(case) is not None:
         return None
     if case.part.centre_height == 0:
         return 0.0

@@ -9,7 +9,7 @@ from .friction.face import FaceLaw as FaceLaw
 from .friction.local import LocalContact as LocalContact
 from .friction.table import FrictionTable as FrictionTable
 from .body.body import Body as Body
-from .film import Film as Film, assumed_contact as assumed_contact
+from .film import Film as Film
 from .footprint import Footprint as Footprint
 from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind, Outcome as Outcome, State as State
@@ -25,6 +25,7 @@ from .samples import (
 from .trajectory import Energy as Energy, FilmEnergy as FilmEnergy, Trajectory as Trajectory
 
 # Not public: for the packages that build on this one.
+from .film import assumed_contact as assumed_contact
 from .friction_input import (
     KogutEtsionInput as KogutEtsionInput,
     MIN_POINTS as MIN_POINTS,

@@ -192,6 +192,8 @@ def is_law(friction: object) -> TypeGuard[Contact]:
 
 def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "stop") -> list[str]:
     """What is wrong with a friction law for a part."""
+    if isinstance(part, Micropart) and part.film and is_law(friction) and friction.pull_off == 0:
+        return ["Input friction of simulate must have a pull-off force on a film of air, whose gap follows from it"]
     if not is_law(friction) or friction.law.kind != LOCAL:
         return []
     while isinstance(friction, ScaledFriction):

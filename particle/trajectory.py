@@ -59,10 +59,13 @@ class Energy:
 
 @dataclass(frozen=True, eq=False)
 class FilmEnergy:
-    """The energy ledger of a film of air at the rows of a trajectory: what it stores grows by work - heat."""
+    """The energy ledger of a film of air at the rows of a trajectory: what it stores grows by work - heat.
+
+    It is that of Galerkin's equations, quadratic in p/p_a - 1, and so a check of the numerics.
+    """
 
     stored: FloatArray = field(repr=False)  # (n,) J, p_a/2 int h (p/p_a - 1)^2 dA
-    work: FloatArray = field(repr=False)  # (n,) J, of the gap on the air since the start
+    work: FloatArray = field(repr=False)  # (n,) J, -int (p - p_a) (1 + (p/p_a - 1)/2) h_t dA dt since the start
     heat: FloatArray = field(repr=False)  # (n,) J, what the air lost by its flow since the start
 
     @property

@@ -43,7 +43,8 @@ def identify(
     track : Track or sequence of Track
         Where the part was. A track counts by its own noise, the deviation of its residuals.
     free : str or sequence of str
-        Places of fields of `part` and `friction`, as of `Case.vary`: ``"part.squeeze"``, ``"friction.coefficient"``.
+        Places of fields of `part`, `friction` and `air`, as of `Case.vary`: ``"part.squeeze"``,
+        ``"friction.coefficient"``.
         All tracks share their values.
     bounds : mapping, optional
         The least and largest value of a field, texts with units or SI; by default a tenth and ten times its value in

@@ -82,9 +82,9 @@ def _deviation(case: Case, path: str, size: object) -> Deviation:
         return Deviation(path, (), amount, is_relative)
     field = find_field(case, lattice_of(case)[0], path)
     head = field.locations[0]
-    if head[0] not in ("part", "friction", "actuators") or (head[0] == "actuators" and head[2] in OF_PLATE):
+    if head[0] not in ("part", "friction", "air", "actuators") or (head[0] == "actuators" and head[2] in OF_PLATE):
         raise ValueError(
-            "must be a field of the part, the friction or what drives an actuator; "
+            "must be a field of the part, the friction, the air or what drives an actuator; "
             f"got {path}, which a sweep can vary: it changes more than the path"
         )
     if field.kind != "number":

@@ -14,7 +14,6 @@ from active_surface.studies.points import Points
 from active_surface.studies.study import Study
 from coupling import (
     FAILURES,
-    AirFigures,
     PlateSummary,
     air_figures,
     build_friction,
@@ -46,6 +45,7 @@ FIGURES: Final = (
     "tips",
     "energy_balance",
 )
+OF_AIR: Final = ("load_share", "breathing", "sag_over_gap")
 
 
 def model_warnings(engine: Engine) -> tuple[str, ...]:
@@ -75,7 +75,10 @@ def model_warnings(engine: Engine) -> tuple[str, ...]:
     known = {name: [one[name] for one in figures if one[name] is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one["stretch_error"] for one in figures if one["stretch_error"]]
-    worst["air"] = max((one["air"] for one in figures if one["air"]), key=_pumped, default=None)
+    if first.air is not None:
+        airs = [vars(one["air"]) for one in figures if one["air"]]
+        largest: dict[str, Any] = {name: max(air[name] or 0.0 for air in airs) for name in OF_AIR}
+        worst["air"] = replace(first.air, **largest)
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
     return (*report.warnings(replace(first, frames_per_cycle=None, **worst)), *unchecked)
 
@@ -88,10 +91,6 @@ def _figures(engine: Engine, case: Case) -> dict[str, Any] | None:
     path = interruptible(follow_part, case, scene.surface, friction)
     own = {"energy_balance": path.energy.balance, "air": air_figures(case, scene, path, friction)}
     return vars(plate_figures(case, scene, path, friction)) | own
-
-
-def _pumped(air: AirFigures) -> float:
-    return max(air.load_share or 0.0, air.breathing or 0.0)
 
 
 def _cases(study: Study) -> Iterator[Case]:

@@ -20,7 +20,7 @@ from coupling.case.actuators import (
     half_size,
     must_be_inside,
 )
-from coupling.case.friction import KogutEtsionCase, TableCase
+from coupling.case.friction import CoulombCase, KogutEtsionCase, TableCase
 from coupling.case.part import PartCase
 from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, MotionCase, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
@@ -87,13 +87,11 @@ def _parts(tables: CaseTables) -> dict[Location, PartCase]:
 def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
     """Yield what does not go with parts of which some have a footprint, or none has one, or with a local contact."""
     run, friction, where = tables.run, tables.friction, "[[parts]]" if tables.parts else "[part]"
-    film = tables.air is not None and tables.air.film
     for place, part in parts.items():
         if part.local_contact and not isinstance(friction, KogutEtsionCase):
             yield (*place, "local_contact"), f'must be false with model = "{friction.model}" in [friction]'
-        elif (part.local_contact or film) and part.size is not None and "contact_area" in stated(friction):
-            by = "local_contact" if part.local_contact else "a film of air"
-            yield ("friction", "contact_area"), f"must not be given with {by} and size in {where}"
+        elif part.local_contact and part.size is not None and "contact_area" in stated(friction):
+            yield ("friction", "contact_area"), f"must not be given with local_contact and size in {where}"
         elif part.local_contact and part.face is not None and not part.face.star_shaped:
             yield (*place, "corners"), "must outline a face all of which its centroid sees, with local_contact = true"
     if run.after_tipping == "ignore" and any(part.local_contact and part.face for part in parts.values()):
@@ -129,11 +127,14 @@ def _air(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mis
         yield ("air", "film"), f"must be false with a footprint in {where}: only a point's square has a film"
     if tables.air.pressure == 0:
         return
+    if tables.air.film and isinstance(tables.friction, CoulombCase) and tables.friction.adhesion == 0:
+        yield ("friction", "adhesion"), "must be greater than 0 with a film of air, whose gap follows from it"
     if tables.run.scheme != "events":
         yield ("run", "scheme"), f'must be "events" with [air], unless that is a vacuum; got "{tables.run.scheme}"'
     if not isinstance(tables.friction, KogutEtsionCase):
         for place in (place for place, part in parts.items() if part.face is None and part.size is None):
-            yield (*place, "size"), "is missing; with [air], unless that is a vacuum, it must be a length"
+            must = 'it must be a length such as "100 um", the side of the part'
+            yield (*place, "size"), f"is missing; with [air], unless that is a vacuum, {must}"
 
 
 def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:

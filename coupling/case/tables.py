@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Final, Literal
 
-from pydantic import ConfigDict, Field, StrictFloat, StrictInt
+from pydantic import ConfigDict, Field, StrictBool, StrictFloat, StrictInt
 
 from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
@@ -57,13 +57,13 @@ class RunCase(Table):
 class AirCase(Table):
     """The air around the part, in Pa, K and m."""
 
-    pressure: LoadPressure = Field(default=101325.0, ge=0)
+    pressure: LoadPressure = Field(default=101325.0, ge=0, le=1e6)
     """Its pressure; 0 in a vacuum."""
     temperature: Temperature = 293.15
     """Its temperature."""
-    bow: Length = Field(default=0.0, ge=0, examples=["0.5 um"])
+    bow: Length = Field(default=0.0, ge=0, le=1e-4, examples=["0.5 um"])
     """What a face that is not flat, or stands on feet, adds to the gap under it."""
-    film: bool = False
+    film: StrictBool = False
     """Whether the path includes the film of air under a point's square, which bears load, besides its drag."""
 
 

@@ -30,6 +30,7 @@ PRESSURES: Final = {
     "uniform": "uniform over the face, whatever the moments",
     "local": "by the gap at each point of the face, which tilts to bear the moments",
 }
+LETS_GO = 1 - 1e-3  # of the pull-off force
 SLIPS = 1 - 1e-6  # of the friction limit: rounding must not decide whether it slips
 
 
@@ -85,6 +86,9 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
     if s.flights:
         hops = f"{count(s.flights, 'flight')}, {count(s.landings, 'landing')}"
         rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
+    if s.air is not None and s.air.end_without is not None:
+        x, y = (c * per_metre for c in s.air.end_without)
+        rows.append(("film", f"without it the part would end at ({x:.4f}, {y:.4f}) {unit}, {s.air.outcome_without}"))
     return rows + ([("loads", ", ".join(loads))] if (loads := _loads(s)) else [])
 
 
@@ -165,8 +169,11 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
     if margins.contact is not None:
         texts.append(_contact(s, margins.contact))
     elif s.air is not None and s.air.largest_gap is not None:
-        load, gap = quantity(margins.smallest_load, "N"), quantity(s.air.largest_gap, "m")
-        texts.append(f"contact: the load on the asperities falls to {load}; the film of air opens to {gap}")
+        load, gap, rest = quantity(margins.smallest_load, "N"), s.air.largest_gap, quantity(s.air.gap, "m")
+        lets_go = margins.scale > 0 and margins.smallest_load <= -LETS_GO * margins.scale
+        all_of_it = ", all of the pull-off force" if lets_go else ""
+        opens = f"the film of air opens to {quantity(gap, 'm')} from {rest} at rest"
+        texts.append(f"contact: the load on the asperities falls to {load}{all_of_it}; {opens}")
     elif margins.smallest_load < 0:
         load = quantity(margins.smallest_load, "N")
         texts.append(f"contact: the load falls to {load}, which only a law without pull-off bears")
@@ -252,7 +259,8 @@ def _air(air: AirFigures) -> Iterator[str]:
         return
     gap, at = quantity(air.gap, "m"), f"At {quantity(air.pressure, 'Pa', 4)} "
     by = ", assumed, as the friction law states none" if air.assumed else ""
-    share = "" if air.load_share is None else f"; load share {air.load_share:.2g}, breathing {air.breathing:.2g}"
+    shares = {"load share": air.load_share, "breathing": air.breathing}
+    share = "".join(f"; {name} {value:.2g}" for name, value in shares.items() if value is not None)
     yield f"{at}over a gap of {gap}{by}{share}"
     settles = "" if air.settle_time is None else f", settles in {quantity(air.settle_time, 's')}"
     drags = ", left out" if air.included == "nothing" else ""

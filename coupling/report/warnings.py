@@ -130,24 +130,26 @@ def _of_air(s: Summary) -> Iterator[str]:
         if air.sag_over_gap > FLAT and not (isinstance(s, PlateSummary) and s.local_contact):
             yield (
                 f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, which is "
-                f"taken as uniform: that holds up to about {FLAT}. A rough contact with local_contact = true follows "
-                "the bend."
+                f"taken as uniform; that holds up to about {FLAT}, and far above it the direction of the way alone. "
+                'model = "kogut-etsion" with local_contact = true follows the bend.'
             )
         return
     at, face = f"At {quantity(air.pressure, 'Pa', 4)} ", s.turned is not None
+    remedy = f" [air] with film = true includes it{' for a part without a footprint' * face}."
+    remedy = remedy if s.scheme == "events" else ""
     if air.load_share is not None and air.load_share > MAX_AIR:
         off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"
         yield (
             f"{at}a film of air under the part carries {air.load_share:.2g} times as much of the load's swing as the "
-            f"contact, and friction lags: expect the way to be off by {off}. Below 1 kPa, or on feet of 2 um, it "
-            f"carries next to none. [air] with film = true includes it{' for a part without a footprint' * face}."
+            f"contact, and friction lags: expect the way to be off by {off}.{remedy}"
         )
     if air.breathing is not None and air.breathing > MAX_AIR:
+        off = f"changes its way by {about(air.breathing)}" if air.breathing <= ESTIMATE else "can turn its way around"
         yield (
             f"{at}the plate, as it bends, pumps air under the part with up to {air.breathing:.2g} times the force that "
-            "holds it, which can turn its way around."
+            f"holds it, which {off}.{remedy}"
         )
-    if s.outcome == Outcome.DETACHED and air.velocity_change < air.escape_speed:
+    if s.outcome == Outcome.DETACHED and air.settle_time is not None and air.velocity_change < air.escape_speed:
         yield (
             f"{at}the part would not come off: air holds it on a plate slower than "
             f"{quantity(air.escape_speed, 'm/s')}, and this one changes its velocity by "

@@ -16,7 +16,6 @@ from particle.types import FloatArray
 
 FUNCTIONS: Final = 5  # of the pressure
 SIDE_POINTS = 8  # of the rule for the flow
-LEAST_SHARE = 1e-3  # of a face on which the assumed contact stands
 PER_AREA = 371.6019695430806  # Pa, the pull-off force of `KogutEtsion()`, which takes .4 s to find
 
 
@@ -69,8 +68,8 @@ class Film:
         contact, factor = unscaled(friction)
         local = contact if isinstance(contact, LocalContact) else None
         own = local.contact if local else contact if isinstance(contact, KogutEtsion) else KogutEtsion()
-        share = 1.0 if isinstance(contact, (LocalContact, KogutEtsion)) else share_of(contact, self.size**2)
         rough = isinstance(contact, (LocalContact, KogutEtsion))
+        share = 1.0 if local else own.contact_area / self.size**2 if rough else share_of(contact, self.size**2)
         law = (local or _square(own, self.size)).law
         air, half = self.air, self.size / 2
         points, weights = _half_square()
@@ -79,7 +78,7 @@ class Film:
         fine, fine_weights = _half_square(2 * SIDE_POINTS)
         exact, bends = _functions(fine)[0], np.column_stack([np.ones(len(fine)), _heights(half * fine)])
         return Layer(
-            law=law._replace(per_area=law.per_area * np.repeat([share, factor], 4)),
+            law=law._replace(per_area=law.per_area * np.repeat([share, share * factor], 4)),
             bends=local is not None,
             grips=rough,
             closed=own.branch[0],
@@ -99,8 +98,8 @@ class Film:
 
 
 def assumed_contact(friction: Contact, area: float) -> KogutEtsion:
-    """The rough contact of a face [m^2] under a law that states no separation: `KogutEtsion()`, on as much of the face
-    as has the law's pull-off force.
+    """The rough contact of a face [m^2] under a law that states no separation: `KogutEtsion()` on a share of the face,
+    that whose pull-off force is the law's.
     """
     return KogutEtsion(contact_area=share_of(friction, area) * area)
 
@@ -108,7 +107,7 @@ def assumed_contact(friction: Contact, area: float) -> KogutEtsion:
 def share_of(friction: Contact, area: float) -> float:
     """A law's pull-off force over that of `KogutEtsion()` on a face [m^2]; 1 where it is 0 or infinite."""
     pull_off = friction.pull_off
-    return max(pull_off / (PER_AREA * area), LEAST_SHARE) if 0 < pull_off < math.inf else 1.0
+    return pull_off / (PER_AREA * area) if 0 < pull_off < math.inf else 1.0
 
 
 def unscaled(friction: Contact) -> tuple[Any, float]:
@@ -154,7 +153,7 @@ def _functions(places: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _integral(n: int, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(P_n+1 - P_n-1)/sqrt(4 n + 2), the integral of Legendre's P_n but for a factor, and its slope."""
+    """(P_n+1 - P_n-1)/sqrt(4 n + 2), a multiple of the integral of Legendre's P_n, and its slope."""
     legendre = np.polynomial.legendre
     c = np.zeros(n + 2)
     c[n + 1], c[n - 1] = 1.0, -1.0

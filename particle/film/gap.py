@@ -15,8 +15,8 @@ and the gap follows from them and from the load N, which asperities and film bea
 
 With its contents given the film is a stiff spring. Where it is stiffer than the asperities pull z is unique.
 
-Asperities that are not `bends` meet a flat surface. The gap then is uniform, offset + z sigma, but for the volume that
-the bending surface moves: -r.H r/2 counts in <psi_i h> alone.
+Asperities that are not `bends` meet a flat surface. The gap then is uniform, offset + z sigma, and the bending surface
+moves its volume only: -r.H r/2 counts in <psi_i h> alone.
 """
 
 from __future__ import annotations
@@ -122,7 +122,12 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     g.width = layer.offset + g.z * layer.law.roughness
     if layer.bends:
         g.width -= layer.half * layer.half * (g.xx + g.yy) / 6
-    g.limit = g.borne + (off + step) * g.borne_slope if layer.grips else friction_limit(law, g.load)
+    if layer.grips:
+        g.limit = g.borne + (off + step) * g.borne_slope
+    elif g.z > layer.law.fold and law.pull_off < math.inf:
+        g.limit = 0.0  # beyond pull-off, where the law ends and the same load comes again
+    else:
+        g.limit = friction_limit(law, g.load)
 
 
 @device_no_arrays

@@ -139,13 +139,19 @@ def test_a_bow_lessens_what_the_air_does() -> None:
         ({"air": {}, "run": {"duration": "1 ms", "scheme": "fixed"}}, 'run.scheme of Case must be "events" with .air'),
         (
             {"air": {}, "friction": {"model": "coulomb", "coefficient": 0.1}, "part": TABLES["part"] | {"size": None}},
-            "Input part.size of Case is missing; with .air., unless that is a vacuum, it must be a length",
+            "Input part.size of Case is missing; with .air., unless that is a vacuum, it must be a length such as",
         ),
     ],
 )
 def test_wrong_air_is_refused(tables: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         case(**tables)
+
+
+def test_a_part_that_nothing_presses_down_or_keeps_has_no_breathing() -> None:
+    run = TABLES["run"] | {"gravity": "0 m/s^2"}
+    air = air_of(run_case(case(run=run, friction={"model": "coulomb", "coefficient": 0.1})).summary)
+    assert (air.breathing, air.settle_time) == (None, None)
 
 
 def test_a_part_without_a_size_has_no_figures_of_air() -> None:
@@ -175,6 +181,11 @@ def test_a_film_bears_load_and_is_in_the_summary_and_the_files(tmp_path: Any) ->
     said = str(lines(result.summary, verbose=True))
     assert "the film of air opens to" in said
     assert "a film carries part of the load" in said
+    assert "without it the part would end at" in said
+    own = result.trajectory.normal_force - result.trajectory.air_force  # type: ignore[operator]
+    assert result.summary.margins.smallest_load == pytest.approx(own.min(), rel=1e-3)
+    drag_alone = run_case(case(air={})).summary
+    assert air.end_without == drag_alone.end_position
     header, *rows = (tmp_path / "case.csv").read_text().splitlines()
     assert header.endswith("gap [m],air force [N]")
     assert float(rows[-1].split(",")[-2]) == result.trajectory.gap[-1]  # type: ignore[index]
@@ -214,10 +225,11 @@ FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radi
     ("tables", "said"),
     [
         ({"air": {"film": True, "pressure": "0 Pa"}}, "air.film of Case must be false in a vacuum"),
+        ({"air": {"film": "yes"}}, "air.film of Case must be true or false"),
         ({**FILM, "part": FACE}, r"air.film of Case must be false with a footprint in .part.: only a point's square"),
         (
-            {**FILM, "friction": {"model": "kogut-etsion", "contact_area": "2e4 um^2"}},
-            "contact_area of Case must not be given with a film of air and size in .part.",
+            {**FILM, "friction": {"model": "coulomb", "coefficient": 0.1}},
+            "friction.adhesion of Case must be greater than 0 with a film of air",
         ),
     ],
 )
@@ -228,5 +240,5 @@ def test_what_does_not_go_with_a_film_is_refused(tables: dict[str, Any], said: s
 
 def test_what_leaves_a_film_out_says_so() -> None:
     plate = {"plate": PLATE, "actuators": [{"position": ["0 um", "0 um"], "stroke": "1 um", "frequency": "1 kHz"}]}
-    with pytest.raises(ValueError, match="case of feasibility must have no film of air"):
+    with pytest.raises(ValueError, match="case of feasibility must have air.film = false"):
         feasibility(Case.model_validate(TABLES | plate | FILM))

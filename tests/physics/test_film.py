@@ -23,6 +23,7 @@ from particle import (
     simulate,
     simulate_many,
 )
+from particle.film.film import PER_AREA, assumed_contact
 from particle.friction.contact import ScaledFriction
 
 pytestmark = pytest.mark.compiled
@@ -190,7 +191,31 @@ def test_a_part_is_followed_off_the_surface_as_far_as_a_film_holds_it():
     assert [event.kind for event in lost.events] == [EventKind.DETACHES, EventKind.DETACHES]
 
 
+def test_beyond_pull_off_a_law_without_a_separation_has_no_friction():
+    """The asperities' load comes back to 0 there, and friction must not with it."""
+    surface = strokes(1.2 * COULOMB.adhesion)
+    path = simulate(surface, replace(ON_FILM, velocity=(1e-3, 0.0)), COULOMB, 2 * STROKE)
+    off = path.gap > TABLE_1.mean_gap(TABLE_1.branch[1]) + 1e-9
+    assert off.sum() > 5
+    assert (path.friction_force[off] == 0.0).all()
+    assert (path.friction_force[path.gap < TABLE_1.mean_gap(3.9)] > 0.0).any()
+
+
+def test_an_assumed_contact_has_the_pull_off_force_of_its_law():
+    assert PER_AREA == pytest.approx(TABLE_1.pull_off / TABLE_1.contact_area, rel=1e-12)
+    assert assumed_contact(COULOMB, SIZE**2).pull_off == pytest.approx(COULOMB.adhesion, rel=1e-12)
+
+
+def test_a_rough_contact_smaller_than_the_face_keeps_its_friction_on_a_film():
+    law = KogutEtsion(contact_area=SIZE**2 / 4)
+    part = Micropart(MASS, (0.0, 0.0), velocity=(0.01, 0.0))
+    free, path = (simulate(platform_surface(size=1e-3), replace(part, film=film), law, 1e-5) for film in (None, FILM))
+    assert path.friction_force[0] == pytest.approx(free.friction_force[0], rel=1e-6)
+
+
 def test_what_does_not_go_with_a_film_is_refused():
+    with pytest.raises(ValueError, match="friction of simulate must have a pull-off force on a film of air"):
+        simulate(plate(), ON_FILM, CoulombAdhesion(0.1), 1e-3)
     with pytest.raises(ValueError, match="size of Film must be that of the LocalContact"):
         simulate_many(plate(), [replace(PART, film=Film(Air(), 5e-5))], LOCAL, 1e-3)
     with pytest.raises(ValueError, match="film of Micropart must be left out with the scheme 'fixed'"):

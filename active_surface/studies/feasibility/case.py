@@ -112,7 +112,7 @@ def feasibility(
     if not case.actuators:
         raise ValueError("Input case of feasibility must have a plate on actuators; got a platform")
     if case.air is not None and case.air.film:
-        raise ValueError("Input case of feasibility must have no film of air (air.film): its bounds leave that out")
+        raise ValueError("Input case of feasibility must have air.film = false: a chart is of parts without a film")
     if areas and case.part.local_contact:
         raise ValueError("Input areas of feasibility must be false with part.local_contact")
     if not frequency:

@@ -19,6 +19,7 @@ from coupling.files import whole_file
 PREFIXED: Final = {"m": ("um", 6), "s": ("ms", 3), "N": ("uN", 6), "Pa": ("GPa", -9)}
 """What is written instead of an SI unit, and how many powers of ten smaller it is."""
 SMALLEST, LARGEST = Decimal("1e-4"), Decimal("1e6")  # numbers that are written without a power of ten
+LEAST_OF_LARGER: Final = Decimal("1e-3")  # of a unit larger than the SI unit
 FILES: Final = (("plate", "mesh"), ("plate", "motion"), ("friction", "file"))
 """Fields that may name a file, which is counted from the case file's folder."""
 
@@ -90,7 +91,7 @@ def written(value: Any, annotation: Any, like: Any = None) -> str:
 
 def _in_usual_unit(value: float, quantity: Quantity) -> str:
     number, (unit, power) = Decimal(repr(float(value))), PREFIXED.get(quantity.unit, (quantity.unit, 0))
-    if abs(number.scaleb(power)) >= LARGEST or (power < 0 and abs(number.scaleb(power)) < SMALLEST):
+    if abs(number.scaleb(power)) >= LARGEST or (power < 0 and abs(number.scaleb(power)) < LEAST_OF_LARGER):
         unit, power = quantity.unit, 0
     return f"{_plain(number.scaleb(power))} {unit}"
 
