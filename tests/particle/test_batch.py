@@ -120,7 +120,7 @@ def test_an_error_on_the_way_ends_all_paths(surface, parts, monkeypatch):
     def failed(driven, request, tolerance, stop, face):
         raise RuntimeError("no such cell")
 
-    monkeypatch.setattr("particle.batch.find_path", failed)
+    monkeypatch.setattr("particle.simulation.find_path", failed)
     with pytest.raises(RuntimeError, match="^no such cell$"):
         simulate_many(surface, parts, LAW, 1e-4, threads=2)
 

@@ -15,7 +15,7 @@ from particle import kernel_cache
 from particle.kernel_cache import MAX_FOLDERS, PACKAGE, _Forms, cache_folder, place_of, source_digest
 
 EVENTS = ("events", *(f"events/{room}" for room in ("mechanics", "rest", "sliding", "flight")))
-ROOMS = ("body", "", "drives", "friction", "surface", *EVENTS, "fixed")
+ROOMS = ("body", "film", "", "drives", "friction", "surface", *EVENTS, "fixed")
 USE = """
 import os
 import numpy as np
