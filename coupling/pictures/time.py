@@ -56,7 +56,7 @@ def curves_of(portrait: Portrait) -> list[Curves]:
     samples = portrait.samples
     friction = Curves("friction", "N", {"": samples.friction_force}, samples.time)
     speed = f"speed {'on ' + portrait.summary.origin if portrait.base else 'in the plane'}"
-    curves = [strokes_of(portrait), margins_over_time(portrait), film_over_time(portrait)]
+    curves = [strokes_of(portrait), margins_over_time(portrait), *film_over_time(portrait)]
     curves += [friction] * bool(samples.friction_force.any())
     curves += velocities_of(portrait) or [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)}, samples.time)]
     return [one for one in curves if one is not None]
@@ -101,13 +101,13 @@ def margins_over_time(portrait: Portrait) -> Curves | None:
     return Curves("pull", "friction limit", {"pull": slip}, times, marked=1.0, right=off if has_contact else None)
 
 
-def film_over_time(portrait: Portrait) -> Curves | None:
-    """What asperities and a film of air bear and, on a scale of its own, the gap; None: there is no film."""
+def film_over_time(portrait: Portrait) -> list[Curves]:
+    """What asperities and a film of air bear, and the gap; none without a film."""
     samples = portrait.samples
     if samples.gap is None or samples.air_force is None:
-        return None
+        return []
     loads = {"asperities": samples.normal_force - samples.air_force, "air": samples.air_force}
-    return Curves("load", "N", loads, samples.time, right=Curves("gap", "m", {"gap": samples.gap}, samples.time))
+    return [Curves("load", "N", loads, samples.time), Curves("gap", "m", {"": samples.gap}, samples.time)]
 
 
 def velocities_of(portrait: Portrait) -> list[Curves]:
