@@ -15,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling import Case, PathTask, build_friction, build_part, build_surface, follow, read_case
-from particle import Air, Film, KogutEtsion, Micropart, simulate
+from particle import Air, Film, KogutEtsion, Micropart, Outcome, simulate
 
 PAGE = Path(__file__).parent
 MICRO, ROOM, SIZE = 1e6, 101325.0, 95e-6
@@ -52,13 +52,14 @@ DEVICES = {
 }
 
 
-def ways(case: Case, changes: list[dict[str, Any]]) -> list[float]:
-    """How far [m] the part goes in the direction that it takes in a vacuum, with each change."""
+def ways(case: Case, changes: list[dict[str, Any]]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """How far [m] the part goes in the direction of its way in a vacuum, and whether to the end; (n, 2)."""
     surface = build_surface(case)
     cases = [case, *(case.vary({"air": {"film": True}}).vary(change) for change in changes)]
     paths = follow([PathTask(surface, build_part(one), build_friction(one), one.run) for one in cases])
     free, *moved = [path.position[-1] - path.position[0] for path in paths]
-    return [float(step @ free / np.hypot(*free)) for step in moved]
+    kept = [path.outcome in (Outcome.STUCK, Outcome.MOVING) for path in paths[1:]]
+    return np.column_stack([np.array(moved) @ free / np.hypot(*free), kept])
 
 
 def draw() -> None:
@@ -82,15 +83,18 @@ def draw() -> None:
             ],
         )
         found = ways(case, [change for some in changes for change in some])
-        print(label, np.round(np.array(found) * MICRO, 3).tolist())
+        print(label, np.round(found[:, 0] * MICRO, 3).tolist())
         for panel, values, scale in zip(axes, (PRESSURES, BOWS, SIZES), (1.0, MICRO, MICRO), strict=True):
-            own, found = found[: len(values)], found[len(values) :]
-            panel.plot(values * scale, np.array(own) * MICRO, "o-", color=colour, markersize=3, label=label)
+            (own, kept), found = found[: len(values)].T, found[len(values) :]
+            panel.plot(values * scale, own * MICRO, "o-", color=colour, markersize=3, label=label)
+            lost = kept == 0
+            panel.plot(values[lost] * scale, own[lost] * MICRO, "x", color=colour, markersize=7)
     _label(axes[0], "pressure of the air [Pa]", "log")
     _label(axes[1], "bow of the face [µm]", "linear")
     _label(axes[2], "side of the part [µm], its mass and adhesion as its area", "log")
     axes[0].set_ylabel("way along that in a vacuum [µm]")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2, fontsize=10)
+    axes[0].plot([], [], "x", color="gray", label="comes off before the end")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=10)
     figure.savefig(PAGE / "air.png", dpi=100)
 
 
