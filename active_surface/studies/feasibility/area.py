@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Final, NamedTuple
@@ -162,8 +163,10 @@ def _examine(
     def look(squares: Squares, moments: int) -> _Counts:
         return _count(rest, squares, np.linspace(0.0, window, moments + 1), every**2)
 
-    # Few squares tell how many moments are enough.
-    few = squares_within(place.outline, min(place.across, FEW), rest)
+    # Few squares tell how many moments are enough, if a face has room in them.
+    few = squares = squares_within(place.outline, place.across, rest)
+    with suppress(ValueError):
+        few = squares_within(place.outline, min(place.across, FEW), rest)
     coarse, error = look(few, count), np.inf
     for _ in range(most):
         fine = look(few, 2 * count)
@@ -171,7 +174,6 @@ def _examine(
         if error <= TOLERANCE:
             break
         coarse, count = fine, 2 * count
-    squares = squares_within(place.outline, place.across, rest)
     found = look(squares, count)
     areas = found.slips.mean(axis=0) * squares.side**2
     moments = window * (np.arange(areas.shape[2]) + 0.5) / areas.shape[2]
