@@ -40,7 +40,7 @@ def test_what_cannot_deviate_is_refused_with_all_else(folder):
     text = str(caught.value)
     for message in (
         "part.mas must be a field of the case; part has no mas; did you mean mass?",
-        "plate.thickness must be a field of the part, the friction or what drives an actuator",
+        "plate.thickness must be a field of the part, the friction, the air or what drives an actuator",
         'actuators.*.stroke must deviate by a share such as "2 %" or a quantity in m; got "2 Hz"',
         'part.position must be a length such as "1 um", of which nothing is a share; got "1 %"',
         'friction.limit must deviate by 0 or more, and by less than 100 %; got "120 %"',
