@@ -170,7 +170,7 @@ def margin_lines(s: Summary) -> list[tuple[str, str]]:
         texts.append(_contact(s, margins.contact))
     elif s.air is not None and s.air.largest_gap is not None:
         load, gap, rest = quantity(margins.smallest_load, "N"), s.air.largest_gap, quantity(s.air.gap, "m")
-        lets_go = margins.scale > 0 and margins.smallest_load <= -LETS_GO * margins.scale
+        lets_go = not s.load_unbounded and margins.smallest_load <= -LETS_GO * margins.scale
         all_of_it = ", all of the pull-off force" if lets_go else ""
         opens = f"the film of air opens to {quantity(gap, 'm')} from {rest} at rest"
         texts.append(f"contact: the load on the asperities falls to {load}{all_of_it}; {opens}")
