@@ -34,6 +34,7 @@ PER_STROKE: Final = 24  # moments in the shortest stroke
 LOSSES: Final = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE, EventKind.TIPS)  # that end a path
 MAX_NAMED: Final = 1000  # events whose actuators are sought
 MAX_SHARES: Final = 500_000  # of actuators at places that are found at once: 30 MB
+AS_MUCH: Final = 1 - 1e-6  # of the largest share: the first with this much is named, as rounding must not decide
 
 
 @dataclass(frozen=True)
@@ -191,5 +192,7 @@ def _actuators(
             each = tilts - (value * acceleration)[..., None] * slope[:, None]
             length = np.hypot(*pull.T)
             shares = (each @ pull[..., None])[..., 0] / np.where(length > 0, length, 1.0)[:, None]
-        numbers[rows] = np.where(shares.max(axis=1) > 0, shares.argmax(axis=1), -1)
+        most = shares.max(axis=1, keepdims=True)
+        first = (shares >= AS_MUCH * most).argmax(axis=1)  # of those that symmetry makes equal
+        numbers[rows] = np.where(most[:, 0] > 0, first, -1)
     return numbers
