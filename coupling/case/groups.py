@@ -1,0 +1,75 @@
+"""Groups: the rows and columns of an array, and a case in which only some actuators run, or all without an end."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.case.actuators import ENDLESS, ActuatorCase
+from coupling.case.case import Case
+
+GroupKind = Literal["all", "columns", "rows", "each"]
+KINDS: Final = "all", "columns", "rows", "each"
+SAME_LINE: Final = 1e-3  # of an array's longer side: actuators as near to each other along an axis are of one line
+
+
+def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
+    """The numbers of the actuators of each group by its name: all, each column from the left, each row from below, each.
+
+    Raises ValueError for another kind.
+    """
+    if kind not in KINDS:
+        raise ValueError(f'Input groups must be "all", "columns", "rows" or "each"; got {kind!r}')
+    count = len(case.actuators)
+    if kind == "all":
+        return {"all": tuple(range(count))}
+    if kind == "each":
+        return {f"actuator {k}": (k,) for k in range(count)}
+    places = np.array([one.position for one in case.actuators])
+    lines = _lines(places[:, 0 if kind == "columns" else 1], SAME_LINE * float(np.ptp(places, axis=0).max()))
+    return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines, 1)}
+
+
+def _lines(along: NDArray[np.float64], near: float) -> list[tuple[int, ...]]:
+    """The numbers of those with about the same coordinate, from the least coordinate on."""
+    order = np.argsort(along, kind="stable")
+    breaks = np.flatnonzero(np.diff(along[order]) > near) + 1
+    return [tuple(sorted(line.tolist())) for line in np.split(order, breaks)]
+
+
+def running_case(case: Case, numbers: Collection[int]) -> Case:
+    """The case in which only the actuators of these numbers run; the others stay at 0, or push with no force.
+
+    Raises ValueError for a number that no actuator has.
+    """
+    if wrong := sorted(set(numbers) - set(range(len(case.actuators)))):
+        raise ValueError(f"Input numbers of actuators must be from 0 to {len(case.actuators) - 1}; got {wrong[0]}")
+    actuators = [one if k in numbers else at_rest(one) for k, one in enumerate(case.actuators)]
+    return case.model_copy(update={"actuators": tuple(actuators)})
+
+
+def at_rest(actuator: ActuatorCase) -> ActuatorCase:
+    """The actuator with a drive that does not move."""
+    update: dict[str, Any] = {"force": 0.0} if actuator.force is not None else {"stroke": 0.0}
+    if actuator.frequency is None:  # a table or a schedule
+        update |= {"frequency": 1.0, "table": None, "segments": None, "repeats": 1}
+    return actuator.model_copy(update=update)
+
+
+def endless_case(case: Case) -> Case:
+    """The case whose drives go on without an end, and have their full strokes from the first cycle on.
+
+    Raises ValueError where a drive does not come back.
+    """
+    for k, one in enumerate(case.actuators):
+        if one.cycle == "up" and (one.stroke or one.force):
+            raise ValueError(f'actuators[{k}].cycle must not be "up" here, as the drive must repeat')
+    return case.model_copy(update={"actuators": tuple(map(_endless, case.actuators))})
+
+
+def _endless(actuator: ActuatorCase) -> ActuatorCase:
+    passes: Sequence[Any] = actuator.table or actuator.segments or ()
+    return actuator.model_copy(update={"cycles": None, "ramp": 0.0} | ({"repeats": ENDLESS} if passes else {}))
