@@ -13,7 +13,7 @@ import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.drift.basins import STILL, Basins, Fate, Field, basins_of
-from active_surface.studies.feasibility.area import PER_STROKE, moving
+from active_surface.studies.feasibility.area import moving
 from active_surface.studies.feasibility.counting import HANGS, RESTS, find_states
 from active_surface.studies.feasibility.places import responses_of, resting_of, squares_within
 from common import draw, percent, quantity
@@ -45,8 +45,9 @@ if TYPE_CHECKING:
 
 ACROSS: Final = 32  # places along the plate's longer side
 LOOSE: Final = 1e-6  # the tolerance of the paths, unless that of the case is larger
-SURE: Final = 0.8  # of the friction limit: a part that is pulled less at the moments looked at never slips
-CHECKED: Final = 12  # runs that a map is compared with
+PER_STROKE: Final = 10  # moments in the shortest stroke, at which a part at rest is looked at
+SURE: Final = 0.8  # of the friction limit: a part that is pulled less at these moments never slips
+CHECKED: Final = 8  # runs that a map is compared with
 MOST: Final = 40  # periods of each
 SEED: Final = 1
 NAMED: Final = 3  # ends, in words
