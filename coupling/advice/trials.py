@@ -98,7 +98,7 @@ def advise(result: Result, largest_stroke: float | None = None) -> list[Trial]:
     """Search for what would have the part of a run move and stay on, by trial runs; the best first.
 
     largest_stroke: the factor of strokes up to which the model holds [that of the summary].
-    None where no trial does, and where `no_advice` says why none is made.
+    Empty where no trial does, and where `no_advice` says why none is made.
     """
     if no_advice(result):
         return []

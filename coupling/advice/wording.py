@@ -83,7 +83,7 @@ def advice_text(result: Result, trial: Trial | None) -> str:
     speed = quantity(trial.distance / trial.duration, "m/s", 2)
     return (
         f"A trial run{place}{changed} moves it by {quantity(trial.distance, 'm')} in {quantity(trial.duration, 's')}, "
-        f"{speed} on average{_beyond(result.summary, trial)}.{together(result, trial)}"
+        f"{speed} on average{_beyond(result.summary, trial)}.{_together(result, trial)}"
     )
 
 
@@ -96,12 +96,13 @@ def _chosen(choice: Choice) -> str:
     return f"actuator{'s' * (len(choice.running) > 1)} {joined([str(k) for k in choice.running])} alone"
 
 
-def together(result: Result, trial: Trial) -> str:
+def _together(result: Result, trial: Trial) -> str:
     """How much all actuators pull together, where the trial has some of them run alone; else empty."""
     slip = result.summary.margins.slip
     if trial.choice is None or trial.choice.name in ("columns", "rows") or slip is None or not slip.value < 1:
         return ""
-    return f" All {len(result.case.actuators)} together pull with {slip.value:.2g} of the friction limit."
+    count = len(result.case.actuators)
+    return f" {'Both' if count == 2 else f'All {count}'} together pull with {slip.value:.2g} of the friction limit."
 
 
 def _beyond(s: Summary, trial: Trial) -> str:

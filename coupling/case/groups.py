@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Any, Final, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any, Final
 
 from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.case import Case
 
-GroupKind = Literal["all", "columns", "rows", "each"]
 KINDS: Final = "all", "columns", "rows", "each"
 SAME_LINE: Final = 1e-3  # of an array's longer side: actuators as near to each other along an axis are of one line
 
 
 def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
-    """The numbers of the actuators of each group by its name: all, each column from the left, each row from below, each.
+    """The numbers of the actuators of each group by its name: all, columns from the left, rows from below, or each.
 
     Raises ValueError for another kind.
     """
@@ -28,16 +24,21 @@ def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
         return {"all": tuple(range(count))}
     if kind == "each":
         return {f"actuator {k}": (k,) for k in range(count)}
-    places = np.array([one.position for one in case.actuators])
-    lines = _lines(places[:, 0 if kind == "columns" else 1], SAME_LINE * float(np.ptp(places, axis=0).max()))
+    places = [one.position for one in case.actuators]
+    near = SAME_LINE * max(max(along) - min(along) for along in zip(*places, strict=True))
+    lines = _lines([place[0 if kind == "columns" else 1] for place in places], near)
     return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines, 1)}
 
 
-def _lines(along: NDArray[np.float64], near: float) -> list[tuple[int, ...]]:
+def _lines(along: Sequence[float], near: float) -> list[tuple[int, ...]]:
     """The numbers of those with about the same coordinate, from the least coordinate on."""
-    order = np.argsort(along, kind="stable")
-    breaks = np.flatnonzero(np.diff(along[order]) > near) + 1
-    return [tuple(sorted(line.tolist())) for line in np.split(order, breaks)]
+    lines: list[list[int]] = []
+    for k in sorted(range(len(along)), key=along.__getitem__):
+        if lines and along[k] - along[lines[-1][-1]] <= near:
+            lines[-1].append(k)
+        else:
+            lines.append([k])
+    return [tuple(sorted(line)) for line in lines]
 
 
 def running_case(case: Case, numbers: Collection[int]) -> Case:

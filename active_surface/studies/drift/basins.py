@@ -111,11 +111,9 @@ def basins_of(field: Field, starts: FloatArray) -> Basins:
             break
         moved, now = field.at(points[live])
         length = np.hypot(*moved.T)
-        points[live] += (
-            moved
-            * np.maximum(1.0, STEP * field.spacing / np.maximum(length, 1e-300))[:, None]
-            * (length > STILL * field.spacing)[:, None]
-        )
+        points[live] += moved * np.maximum(1.0, STEP * field.spacing / np.maximum(length, 1e-300))[:, None] * (
+            length > STILL * field.spacing
+        )[:, None]
         fates[live] = np.maximum(fates[live], now)
         rows = np.flatnonzero(live)
         live[rows[(length <= STILL * field.spacing) | (now > Fate.MOVES)]] = False

@@ -136,9 +136,7 @@ class Drift:
     def lines(self) -> list[tuple[str, str]]:
         """Rows (label, text) to print."""
         first = self.maps[0]
-        rows = (
-            [("period", f"{quantity(first.period, 's')}, after which the drives repeat")] if len(self.maps) == 1 else []
-        )
+        rows = [("period", f"{quantity(first.period, 's')}, after which the drives repeat")] if len(self.maps) == 1 else []
         for one in self.maps:
             period = "" if len(self.maps) == 1 else f"in {quantity(one.period, 's')}; "
             rows.append((one.name, f"{period}{one.text}"))
@@ -243,18 +241,14 @@ def drift(
         The case has a platform, or drives without a common period, or the part has no room on the plate.
     """
     if not isinstance(case.plate, PlateCase):
-        raise ValueError(
-            "Input case of drift must have a plate on actuators; on a platform a part drifts everywhere alike"
-        )
+        raise ValueError("Input case of drift must have a plate on actuators; on a platform a part drifts everywhere alike")
     if case.air is not None and case.air.film:
         raise ValueError("Input case of drift must be without a film of air, which remembers the periods before")
     chosen = groups_of(case, groups) if isinstance(groups, str) else dict(groups)
     plates, maps = plates or SolvedPlates(progress), []
     with one_blas_thread():
         for name, numbers in chosen.items():
-            maps.append(
-                _map(running_case(endless_case(case), numbers), name, tuple(numbers), across, threads, progress, plates)
-            )
+            maps.append(_map(running_case(endless_case(case), numbers), name, tuple(numbers), across, threads, progress, plates))
     return Drift(case, tuple(maps))
 
 
@@ -265,16 +259,9 @@ def _map(
     """The map of a case whose drives have no end."""
     duration, schedule = case.run.duration, schedule_of([always_running(one) for one in build_drives(case)], math.inf)
     if schedule.loop < 0:
-        raise ValueError(
-            "Input case of drift must have drives with a common period; give frequencies in a ratio of whole numbers"
-        )
+        raise ValueError("Input case of drift must have drives with a common period; give frequencies in a ratio of whole numbers")
     period = float(schedule.edges[-1] - schedule.edges[schedule.loop])
-    settings = {
-        "duration": period,
-        "start": "steady",
-        "tolerance": max(case.run.tolerance, LOOSE),
-        "after_detachment": "stop",
-    }
+    settings = {"duration": period, "start": "steady", "tolerance": max(case.run.tolerance, LOOSE), "after_detachment": "stop"}
     still = case.part.model_copy(update={"velocity": (0.0, 0.0), "spin": 0.0})
     case = case.model_copy(update={"run": case.run.model_copy(update=settings), "part": still})
     scene, law = plates.scene(case), build_friction(case)
@@ -287,9 +274,7 @@ def _map(
 
     def follow_from(places: FloatArray, periods: int, tell: ProgressCallback = no_progress) -> list[Trajectory]:
         run = case.run.model_copy(update={"duration": periods * period})
-        return follow(
-            [PathTask(scene.surface, build_part(case, (x, y)), law, run) for x, y in places.tolist()], threads, tell
-        )
+        return follow([PathTask(scene.surface, build_part(case, (x, y)), law, run) for x, y in places.tolist()], threads, tell)
 
     with progress(f"Following parts, {name}") as tell:
         paths = follow_from(starts[slips], 1, tell)

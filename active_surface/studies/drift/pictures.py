@@ -53,14 +53,10 @@ def draw_drift(found: Drift) -> Figure:
         its.remove()
     if norm is not None:
         arrows = next(a for its in axes[: len(maps)] for a in its.collections if a.get_array() is not None)
-        bar = figure.colorbar(
-            arrows, ax=[*axes[: len(maps)]], shrink=0.7, extend="min", label=f"mean speed [{speed.name}]"
-        )
+        bar = figure.colorbar(arrows, ax=[*axes[: len(maps)]], shrink=0.7, extend="min", label=f"mean speed [{speed.name}]")
         bar.ax.yaxis.set_major_formatter("{x:g}")
         bar.ax.yaxis.set_minor_formatter("")
-    put_title(
-        figure, f"{found.case.name}: where a part at rest is carried in a period of the drives, and where it ends"
-    )
+    put_title(figure, f"{found.case.name}: where a part at rest is carried in a period of the drives, and where it ends")
     put_keys(figure, keys)
     clear_labels(figure)
     return figure
@@ -110,11 +106,7 @@ def _shade(axes: Axes, one: DriftMap, unit: Unit) -> list[Artist]:
     low = (one.field.origin - one.field.spacing / 2) * unit.per_si
     high = low + np.array(one.field.numbers.shape) * one.field.spacing * unit.per_si
     axes.imshow(
-        grid.transpose(1, 0, 2),
-        origin="lower",
-        extent=(low[0], high[0], low[1], high[1]),
-        zorder=0,
-        interpolation="nearest",
+        grid.transpose(1, 0, 2), origin="lower", extent=(low[0], high[0], low[1], high[1]), zorder=0, interpolation="nearest"
     )
     for k, label in ((-2, "from here it comes off in the end"), (-3, "from here it leaves the plate in the end")):
         if (numbers == k).any():
