@@ -6,23 +6,14 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
+from itertools import islice
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from coupling.advice.choices import Choice, choices_of, chosen_scene, largest_stroke_of
 from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
-from coupling.case import (
-    Case,
-    PlateCase,
-    friction_scales,
-    groups_of,
-    more_plastic,
-    ramped_case,
-    running_case,
-    with_index,
-)
-from coupling.drives import travel
-from coupling.extremes import extremes, sharp_points
+from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
 from coupling.part import build_friction, build_part, friction_law, friction_of, local_size
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import doing, silent
@@ -44,32 +35,11 @@ ENOUGH: Final = 2e-4  # likewise: by what one within the bounds ends the search 
 FARTHER: Final = 1.2  # times the motion of the case itself, that a trial must make
 LEVEL: Final = 1e-6  # of the friction limit: nothing pulls
 WHOLE: Final = 2.0  # ratio of both thresholds from which on a trial counts in full
-QUARTER: Final = 0.25  # of a period: what each line of a wave is behind the one before
-MAX_ALONE: Final = 25  # actuators that are tried one by one
-MAX_GROUPS: Final = 40  # of a plate that follows its drives at once; of others
-MAX_MODELS: Final = 6
+LISTED: Final = 3  # trials
 TURNS: Final = 2  # of the fastest drive, that a trial run has at least
 TRIED: Final = 300  # of the shortest, that a trial run lasts at most
 RAMP: Final = 3.0  # cycles over which forces grow
 RADII, ANGLES = (0.25, 0.5), (0.3, 1.9, 3.4, 5.0)  # of other places around the nearest actuator: of its gap, rad
-
-
-class Choice(NamedTuple):
-    """Which actuators run, and how far each is behind."""
-
-    name: str  # such as "column 1"; of a wave "columns" or "rows", each QUARTER of a period behind the one before
-    running: tuple[int, ...]
-
-    def of(self, case: Case) -> Case:
-        """The case with drives chosen like this."""
-        if self.name not in ("columns", "rows"):
-            return running_case(case, self.running)
-        actuators = list(case.actuators)
-        for number, line in enumerate(groups_of(case, self.name).values()):
-            for k in line:
-                behind = number * QUARTER / (actuators[k].frequency or math.inf)
-                actuators[k] = actuators[k].model_copy(update={"delay": actuators[k].delay + behind})
-        return case.model_copy(update={"actuators": tuple(actuators)})
 
 
 @dataclass(frozen=True)
@@ -181,74 +151,55 @@ class Trials:
         return factors_of(lambda factor: driven(self.scene, rest, factor, setting.stroke))
 
     def ranked(self) -> list[Trial]:
-        """The trials that go far enough, the best first, or the one that goes farthest of all.
+        """The best LISTED of the trials that go far enough, the best first, or the one that goes farthest of all.
 
         First drives within the model's bounds, all and chosen ones, from the case's start and then from places around
         the nearest actuator; then friction; last strokes beyond the bounds.
         """
         every = [self, *self._chosen()]
         for look in (Trials._from_start, Trials._from_elsewhere):
-            found = [trial for one in every if (trial := look(one)) and trial.distance > ENOUGH * self.size]
-            if found:
-                return sorted(found, key=lambda trial: -trial.score)
+            found = [(trial, one) for one in every if (trial := look(one, False))]
+            found.sort(key=lambda pair: -pair[0].score)
+            # Of the best it is looked whether their own strokes are in bounds, as that takes a while.
+            held = [trial if one._holds(trial) else look(one, True) for trial, one in found[: 2 * LISTED]]
+            best = [trial for trial in held if trial and trial.distance > ENOUGH * self.size]
+            if best:
+                return sorted(best, key=lambda trial: -trial.score)[:LISTED]
         last = self._last()
         return [] if last is None else [last]
 
     def _chosen(self) -> Iterator[Trials]:
-        """Trials in which lines of the array run alone, each behind the one before, or single actuators alone."""
-        case, scene = self.case, self.scene
-        if not isinstance(scene, PlateScene) or len(case.actuators) < 2:
-            return
-        moving = {k for k, drive in enumerate(scene.lifts) if travel(drive) > 0}
-        places = scene.shapes.points
-        groups = {kind: groups_of(case, kind) for kind in ("columns", "rows")}
-        choices = [Choice(name, line) for lines in groups.values() for name, line in lines.items() if len(lines) > 1]
-        if len(case.actuators) <= MAX_ALONE:
-            choices += [Choice(name, one) for name, one in groups_of(case, "each").items()]
-        choices = [one for one in choices if 0 < len(moving.intersection(one.running)) < len(moving)]
-        choices = list({one.running: one for one in reversed(choices)}.values())[::-1]
-        choices.sort(key=lambda one: float(np.hypot(*(places[list(one.running)] - self.part.position).T).min()))
-        waves = [Choice(kind, tuple(sorted(moving))) for kind, lines in groups.items() if len(lines) > 2]
-        alone = self.stretches or scene.has_inertia
-        for choice in [*waves, *choices][: MAX_MODELS if alone else MAX_GROUPS]:
-            chosen = choice.of(case)
-            assert isinstance(chosen.plate, PlateCase)
-            if alone or scene.pressed is not None:
-                under = plate_scene(chosen, chosen.plate, silent, scene.shapes)
-            else:
-                lifts = lifts_of(chosen)
-                under = replace(scene, lifts=lifts, surface=scene.surface.driven_by(lifts))
-            yield Trials(replace(self.result, case=chosen, scene=under), None, choice)
+        """Trials with each choice of actuators."""
+        if isinstance(self.scene, PlateScene):
+            for choice in choices_of(self.case, self.scene, self.part.position):
+                case, scene = chosen_scene(self.case, self.scene, choice)
+                yield Trials(replace(self.result, case=case, scene=scene), None, choice)
 
     @cached_property
     def largest_stroke(self) -> float:
         """The factor of strokes up to which slope and strain stay in bounds."""
         if self._largest is not None:
             return self._largest
-        scene = self.scene
-        assert isinstance(scene, PlateScene)
-        if scene.stretch is not None:
-            (_, slope, strain), most = scene.stretch.extremes, 1.0
-        else:
-            off, most = scene.plate.section.thickness / 2, math.inf
-            sharp = sharp_points(scene.plate.singular_corners, scene.shapes.points)
-            shapes, drives = scene.moving_shapes, scene.moving_drives
-            slope, _, bend = extremes(shapes, drives, self.case.run.duration, sharp, off)
-            strain = off * (bend or 0.0)
-        return min([most, *(bound / value for bound, value in ((MAX_SLOPE, slope), (MAX_STRAIN, strain)) if value > 0)])
+        assert isinstance(self.scene, PlateScene)
+        return largest_stroke_of(self.scene, self.case.run.duration)
 
-    def _drives_alone(self) -> Iterator[Setting]:
-        """The case's own strokes, where they are in bounds, and others that are."""
+    def _holds(self, trial: Trial) -> bool:
+        """Whether the stroke of a trial is in bounds, or the case's own."""
+        return self.choice is None or trial.stroke <= self.largest_stroke
+
+    def _drives_alone(self, other: bool) -> Iterator[Setting]:
+        """The case's own strokes, unless others are asked for, and others that are in bounds."""
         pulled = not math.isinf(self.friction.pull_off)
-        if self.choice is None or self.largest_stroke >= 1:
+        if not other:
             yield Setting(pulled=pulled)
         yield from [Setting(stroke, pulled=pulled) for stroke in self._strokes(0.0, self.largest_stroke)]
 
-    def _from_start(self) -> Trial | None:
-        return None if self._is_level else self._farthest(self.part, self._drives_alone(), self.valid)
+    def _from_start(self, other: bool) -> Trial | None:
+        return None if self._is_level else self._farthest(self.part, self._drives_alone(other), self.valid)
 
-    def _from_elsewhere(self) -> Trial | None:
-        return self._elsewhere([*self._drives_alone()][:1], self.valid) if isinstance(self.scene, PlateScene) else None
+    def _from_elsewhere(self, other: bool) -> Trial | None:
+        settings = list(islice(self._drives_alone(other), 1))
+        return self._elsewhere(settings, self.valid) if isinstance(self.scene, PlateScene) else None
 
     @cached_property
     def _is_level(self) -> bool:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from common import joined, percent, quantity
-from coupling.advice.trials import Choice, Trial, no_advice
+from coupling.advice.choices import WAVES, Choice
+from coupling.advice.trials import Trial, no_advice
 from coupling.case import (
     Case,
     DriveCase,
@@ -99,7 +100,7 @@ def _chosen(choice: Choice) -> str:
 def _together(result: Result, trial: Trial) -> str:
     """How much all actuators pull together, where the trial has some of them run alone; else empty."""
     slip = result.summary.margins.slip
-    if trial.choice is None or trial.choice.name in ("columns", "rows") or slip is None or not slip.value < 1:
+    if trial.choice is None or trial.choice.name in WAVES or slip is None or not slip.value < 1:
         return ""
     count = len(result.case.actuators)
     return f" {'Both' if count == 2 else f'All {count}'} together pull with {slip.value:.2g} of the friction limit."

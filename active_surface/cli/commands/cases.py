@@ -134,7 +134,7 @@ def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -
     if trial is not None and not result.scene.fits:
         moving, comment = advice.advised_case(parsed, trial), f"The advice on {case.name}: {text}"
         files = [write_edited(moving, parsed, case.absolute().parent, file, comment)]
-    others = [("or" if k == 0 else "", advice.advice_text(result, one)) for k, one in enumerate(ranked[1:3])]
+    others = [("or" if k == 0 else "", advice.advice_text(result, one)) for k, one in enumerate(ranked[1:])]
     return Answer(figures, [*lines, ("advice", text), *others], files=files)
 
 
