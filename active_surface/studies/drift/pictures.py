@@ -15,7 +15,8 @@ from matplotlib.patches import Patch
 
 from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.drift.basins import Fate
-from active_surface.studies.drift.drift import Drift, DriftMap
+from active_surface.studies.drift.maps import DriftMap
+from active_surface.studies.drift.result import Drift
 from common import Drawing, Unit, draw, percent, unit_for
 from coupling.pictures import PlateView, clear_labels, draw_plate, put_keys, put_label, put_title
 
