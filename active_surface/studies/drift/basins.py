@@ -15,7 +15,8 @@ from scipy.spatial import cKDTree
 from active_surface.arrays import FloatArray, IntArray
 
 STEP: Final = 0.2  # of the spacing: the longest way of many periods between two looks at the drift
-SLOWER, FASTER: Final = 0.5, 1.2  # times that way, after a look at which the part turned back, and after another
+SLOWER: Final = 0.5  # times that way, after a look at which the part turned back
+FASTER: Final = 1.2  # after another
 STILL: Final = 1e-4  # of the spacing, in a period: less is no drift
 LOOKS: Final = 64  # after which a part ends that is on average where it was in the same number before
 FARTHEST: Final = 60.0  # times the starts' extent: the way after which a part ends at the latest

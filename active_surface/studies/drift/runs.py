@@ -176,8 +176,9 @@ class _Ground:
         stroke = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=period))
         moments = np.linspace(0.0, period, math.ceil(PER_STROKE * period / stroke) + 1)
         still, states = np.ones(len(places), dtype=np.bool_), np.zeros((len(places), 1), dtype=np.int8)
+        resting = resting_of(weaker)
         for responses in responses_of(weaker, places, moments)():
-            find_states(responses, np.ones(1), weaker.part, resting_of(weaker), states)
+            find_states(responses, np.ones(1), weaker.part, resting, states)
             still &= (states[:, 0] == RESTS) | (states[:, 0] == HANGS)
         return still
 
