@@ -17,7 +17,7 @@ from active_surface.arrays import FloatArray, IntArray
 STEP: Final = 0.2  # of the spacing: the longest way of many periods between two looks at the drift
 SLOWER: Final = 0.5  # times that way, after a look at which the part turned back
 FASTER: Final = 1.2  # after another
-STILL: Final = 1e-4  # of the spacing, in a period: less is no drift
+STILL: Final = 1e-6  # of the spacing, in a period: less is no drift
 LOOKS: Final = 64  # after which a part ends that is on average where it was in the same number before
 FARTHEST: Final = 60.0  # times the starts' extent: the way after which a part ends at the latest
 JOINED: Final = 1.5  # spacings: ends as near to each other are of one basin

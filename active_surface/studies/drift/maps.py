@@ -52,7 +52,7 @@ class DriftMap:
     field: Field
     starts: FloatArray  # (n, 2) m
     turned: FloatArray  # (n,) rad, in a period; 0 of a point
-    sliding: float  # share of the parts that still slide when the period ends
+    sliding: float  # share of the parts that are still on the move when the period ends
     check: Check
     outline: Outline
     places: FloatArray  # (N, 2) m, of all actuators

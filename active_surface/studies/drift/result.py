@@ -18,7 +18,7 @@ from coupling.case import Case
 if TYPE_CHECKING:
     import xarray
 
-MANY: Final = 0.05  # of the parts: as many that still slide are worth a warning
+MANY: Final = 0.05  # of the parts: so many that are still on the move are worth a warning
 ENDS: Final = "number of the end, -1: it stays, -2: it comes off, -3: it leaves the plate"
 
 
@@ -50,7 +50,7 @@ class Drift:
         found, sliding = [], max(one.sliding for one in self.maps)
         if sliding > MANY:
             found.append(
-                f"{percent(sliding)} of the parts still slide when a period ends, but each period of the map begins at rest"
+                f"{percent(sliding)} of the parts are still on the move when a period ends, but each period of the map begins at rest"
             )
         if self.case.part.face is not None and any(one.turned.any() for one in self.maps):
             heading = math.degrees(self.case.part.heading)

@@ -16,7 +16,7 @@ from active_surface.studies.drift.maps import Check, DriftMap
 from active_surface.studies.drift.result import Drift
 from active_surface.studies.feasibility.area import moving
 from active_surface.studies.feasibility.counting import HANGS, RESTS, find_states
-from active_surface.studies.feasibility.places import responses_of, resting_of, squares_within
+from active_surface.studies.feasibility.places import on_plate, responses_of, resting_of, squares_within
 from coupling import (
     PathTask,
     Progress,
@@ -35,7 +35,7 @@ from coupling.drives import build_drives, travel
 from coupling.scene import PlateScene
 from coupling.stretch import schedule_of
 from coupling.vibration import always_running
-from particle import Outcome, State, Trajectory
+from particle import Outcome, PartAtRest, State, Trajectory
 from particle.friction import LOCAL, Contact, ScaledFriction
 
 ACROSS: Final = 32  # places along the plate's longer side
@@ -126,8 +126,8 @@ def _map(
     period = float(schedule.edges[-1] - schedule.edges[schedule.loop])
     with progress(f"Moving the plate, {name}") as tell:
         ground = _ground(case, period, threads, plates, lambda _: nullcontext(tell))
-    rest = at_rest(ground.case, ground.scene.surface, build_part(ground.case), ground.law)
-    squares = squares_within(ground.scene.shapes.outline, across, rest)
+    outline = ground.scene.shapes.outline
+    squares = squares_within(outline, across, ground.resting(ground.law))
     starts, n = squares.centres, len(squares.centres)
     moved, turned, fates = np.zeros((n, 2)), np.zeros(n), np.zeros(n, dtype=np.int64)
     with progress(f"Following parts, {name}") as tell:
@@ -140,11 +140,11 @@ def _map(
             turned[k] = 0.0 if path.heading is None else path.heading[-1] - path.heading[0]
     fates[(fates == Fate.MOVES) & (np.hypot(*moved.T) < STILL * squares.side)] = Fate.STAYS
     moved[fates == Fate.STAYS] = 0.0
-    sliding = sum(_fate(path) == Fate.MOVES and path.state[-1] == State.SLIP for path in paths) / n
+    sliding = sum(_fate(path) == Fate.MOVES and path.state[-1] != State.STICK for path in paths) / n
     field = Field.of(starts, squares.side, moved, fates)
     with progress(f"Comparing runs, {name}") as tell:
         check = _checked(ground, field, starts, round(case.run.duration / period), tell)
-    outline, places = ground.scene.shapes.outline, ground.scene.shapes.points
+    places = ground.scene.shapes.points
     return DriftMap(name, numbers, period, field, starts, turned, float(sliding), check, outline, places)
 
 
@@ -157,6 +157,10 @@ class _Ground:
     law: Contact
     threads: int | None
 
+    def resting(self, law: Contact) -> PartAtRest:
+        """The part at rest under a friction law."""
+        return at_rest(self.case, self.scene.surface, build_part(self.case), law)
+
     def follow(self, places: FloatArray, periods: int, tell: ProgressCallback = no_progress) -> list[Trajectory]:
         """The paths from rest at places (k, 2) [m], over so many periods."""
         run = self.case.run.model_copy(update={"duration": periods * self.case.run.duration})
@@ -168,8 +172,7 @@ class _Ground:
 
         At as many moments as show the shortest stroke; False: not known, as where the plate rings or contact is local.
         """
-        surface, part = self.scene.surface, build_part(self.case)
-        weaker = at_rest(self.case, surface, part, ScaledFriction(self.law, SURE))
+        surface, weaker = self.scene.surface, self.resting(ScaledFriction(self.law, SURE))
         if self.scene.has_inertia or weaker.part.law.kind == LOCAL:
             return np.zeros(len(places), dtype=np.bool_)
         period = self.case.run.duration
@@ -184,14 +187,8 @@ class _Ground:
 
 
 def _ground(case: Case, period: float, threads: int | None, plates: SolvedPlates, progress: Progress) -> _Ground:
-    run = case.run.model_copy(
-        update={
-            "duration": period,
-            "start": "steady",
-            "tolerance": max(case.run.tolerance, LOOSE),
-            "after_detachment": "stop",
-        }
-    )
+    update = {"duration": period, "start": "steady", "tolerance": max(case.run.tolerance, LOOSE)}
+    run = case.run.model_copy(update=update)
     still = case.part.model_copy(update={"velocity": (0.0, 0.0), "spin": 0.0})
     case = case.model_copy(update={"run": run, "part": still})
     scene = plates.scene(case, progress)
@@ -203,11 +200,11 @@ def _checked(ground: _Ground, field: Field, starts: FloatArray, periods: int, te
     """How far runs from random places within squares that move end from where the map says."""
     chance = np.random.default_rng(SEED)
     movers = starts[field.fates == Fate.MOVES]
-    if not len(movers):
+    places = chance.permutation(movers) + field.spacing * chance.uniform(-0.5, 0.5, movers.shape)
+    places = places[on_plate(ground.scene.shapes.outline, places, ground.resting(ground.law))][:CHECKED]
+    if not len(places):
         return Check()
     periods = min(max(periods, 1), MOST)
-    places = movers[chance.choice(len(movers), min(CHECKED, len(movers)), replace=False)]
-    places = places + field.spacing * chance.uniform(-0.5, 0.5, places.shape)
     ends, fates = field.carried(places, periods)
     paths = ground.follow(places, periods, tell)
     theirs, lost = np.array([path.position[-1] for path in paths]), np.array([_fate(path) > Fate.MOVES for path in paths])
