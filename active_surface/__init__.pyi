@@ -108,6 +108,13 @@ from .studies import (
     read_study as read_study,
     run_study as run_study,
 )
+from .studies.drift import (
+    Basin as Basin,
+    Basins as Basins,
+    Drift as Drift,
+    DriftMap as DriftMap,
+    drift as drift,
+)
 from .views import (
     Animation as Animation,
     animate as animate,

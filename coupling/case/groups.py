@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Any, Final, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.case import Case
 
@@ -17,7 +14,7 @@ SAME_LINE: Final = 1e-3  # of an array's longer side: actuators as near to each 
 
 
 def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
-    """The numbers of the actuators of each group by its name: all, each column from the left, each row from below, each.
+    """The actuators' numbers of each group by its name: all; each column from the left; each row from below; or each.
 
     Raises ValueError for another kind.
     """
@@ -28,16 +25,20 @@ def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
         return {"all": tuple(range(count))}
     if kind == "each":
         return {f"actuator {k}": (k,) for k in range(count)}
-    places = np.array([one.position for one in case.actuators])
-    lines = _lines(places[:, 0 if kind == "columns" else 1], SAME_LINE * float(np.ptp(places, axis=0).max()))
+    sides = list(zip(*(one.position for one in case.actuators), strict=True))
+    near = SAME_LINE * max(max(side) - min(side) for side in sides)
+    lines = _lines(sides[0 if kind == "columns" else 1], near)
     return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines, 1)}
 
 
-def _lines(along: NDArray[np.float64], near: float) -> list[tuple[int, ...]]:
+def _lines(along: Sequence[float], near: float) -> list[tuple[int, ...]]:
     """The numbers of those with about the same coordinate, from the least coordinate on."""
-    order = np.argsort(along, kind="stable")
-    breaks = np.flatnonzero(np.diff(along[order]) > near) + 1
-    return [tuple(sorted(line.tolist())) for line in np.split(order, breaks)]
+    order, lines = sorted(range(len(along)), key=along.__getitem__), list[list[int]]()
+    for k in order:
+        if not lines or along[k] - along[lines[-1][-1]] > near:
+            lines.append([])
+        lines[-1].append(k)
+    return [tuple(sorted(line)) for line in lines]
 
 
 def running_case(case: Case, numbers: Collection[int]) -> Case:

@@ -62,7 +62,7 @@ class Field:
         most = np.zeros(len(points))
         for corner in ((0, 0), (1, 0), (0, 1), (1, 1)):
             cell = low + corner
-            inside = ((cell >= 0) & (cell < self.numbers.shape)).all(axis=1)
+            inside = np.all((cell >= 0) & (cell < self.numbers.shape), axis=1)
             number = np.where(inside, self.numbers[tuple(np.where(inside[:, None], cell, 0).T)], -1)
             share = np.where(number >= 0, (1 - np.abs(place - cell)).prod(axis=1), 0.0)
             nearest, most = np.where(share > most, number, nearest), np.maximum(share, most)
@@ -92,7 +92,7 @@ class Basin(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Basins:
-    """Where parts end in the long run, each carried on by the drift of the place where it is; shares are of all starts."""
+    """Where parts end in the long run, carried on by the drift of where they are; shares are of all starts."""
 
     stay: float  # share that never moves
     come_off: float  # or tip, or are overloaded
@@ -110,15 +110,15 @@ def basins_of(field: Field, starts: FloatArray) -> Basins:
     kept = fates == Fate.MOVES
     numbers = np.select([own == Fate.STAYS, fates == Fate.COMES_OFF, fates == Fate.LEAVES], [-1, -2, -3], 0)
     ends, numbers[kept] = _joined(reached[kept], field.spacing, len(starts))
-    shares = [float((numbers == k).mean()) for k in (-1, -2, -3)]
-    return Basins(*shares, ends, numbers, reached)
+    stay, come_off, leave = (float((numbers == k).mean()) for k in (-1, -2, -3))
+    return Basins(stay, come_off, leave, ends, numbers, reached)
 
 
 def _followed(field: Field, points: FloatArray) -> tuple[FloatArray, IntArray]:
     """Where moving parts end (k, 2) [m], to and fro in its middle, and their fates (k,).
 
-    Where a period carries a part less than STEP of the spacing, many are taken at once, fewer where it turns back. A part
-    that comes into a dead zone stays there; a lost one is where it was lost.
+    Where a period carries a part less than STEP of the spacing, many are taken at once, fewer where it turns back. A
+    part that comes into a dead zone stays there; a lost one is where it was lost.
     """
     points, fates, live = points.copy(), np.full(len(points), int(Fate.MOVES)), np.arange(len(points))
     ends, farthest = points.copy(), STEP * field.spacing

@@ -17,6 +17,7 @@ from meshes import Outline
 
 NAMED: Final = 3  # ends, in words
 FINE: Final = 0.01  # of the spacing: the digits of places in words
+FAR: Final = 0.5  # of the way of runs, or of their number
 NONE: Final = math.nan
 
 
@@ -28,6 +29,11 @@ class Check(NamedTuple):
     way: float = NONE  # m, the median from start to end, of those that both keep; nan: there are none
     gap: float = NONE  # m, the median between the ends of runs and those by the map
     otherwise: int = 0  # how many are lost where the map keeps them, or kept where it loses them
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the map says little of where runs end."""
+        return self.gap > FAR * self.way or self.otherwise > FAR * self.runs
 
     @property
     def text(self) -> str:

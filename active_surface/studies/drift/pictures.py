@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, to_rgb
+from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -25,6 +25,8 @@ from particle import HALO
 SIDE: Final = {1: 7.2, 2: 5.2, 3: 4.4}  # inches, of a map, by how many there are across
 COLUMNS: Final = 3
 MOST_MAPS: Final = 12
+FLATTEST: Final = 0.25  # height over width of a map, at least
+FLAT: Final = 0.5  # below this the bar of speeds lies under the maps
 PART: Final = 0.5  # of the plate's box: where less of it moves, this is what is drawn
 DEEP: Final = 30.0  # times the smallest displacement that has a colour of its own
 LENGTHS: Final = 0.35, 0.95  # of the spacing: those of the shortest and longest arrows
@@ -57,13 +59,18 @@ def draw_drift(found: Drift) -> Figure:
         its.remove()
     if norm is not None:
         arrows = next(a for its in axes[: len(maps)] for a in its.collections if a.get_array() is not None)
+        flat = rows * tall < FLAT
         label = f"mean speed [{speed.name}]"
-        bar = figure.colorbar(arrows, ax=[*axes[: len(maps)]], shrink=min(0.8, 1.6 / rows), extend="min", label=label)
-        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        bar.ax.yaxis.set_major_formatter("{x:g}")
-        bar.ax.yaxis.set_minor_formatter(NullFormatter())
+        look: dict[str, Any] = {"shrink": min(0.8, 1.6 / rows)}
+        if flat:
+            look = {"shrink": 0.6, "location": "bottom", "aspect": 40}
+        bar = figure.colorbar(arrows, ax=[*axes[: len(maps)]], extend="min", label=label, **look)
+        bar.long_axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        bar.long_axis.set_major_formatter("{x:g}")
+        bar.long_axis.set_minor_formatter(NullFormatter())
     some = "" if len(maps) == len(found.maps) else f" (the first {len(maps)} of {len(found.maps)} groups)"
-    put_title(figure, f"{found.case.name}: where a period of the drives carries a part from rest, and where it ends{some}")
+    what = "where a period of the drives carries a part from rest, and where it ends"
+    put_title(figure, f"{found.case.name}: {what}{some}")
     put_keys(figure, keys)
     for _ in range(2):  # the layout settles at the second
         figure.draw_without_rendering()
@@ -76,14 +83,20 @@ def draw_drift(found: Drift) -> Figure:
 def _frame(found: Drift) -> FloatArray:
     """The corners (2, 2) [m] of what is drawn: the plate, or where something moves on less than PART of it."""
     first = found.maps[0]
-    whole = PlateView(first.outline, first.places).frame
+    whole = _tall(PlateView(first.outline, first.places).frame)
     moves = np.any([one.fates != Fate.STAYS for one in found.maps], axis=0)
     if not moves.any():
         return whole
     shown = np.concatenate([first.starts[moves], *(one.basins.reached[moves] for one in found.maps)])
     part = np.array([shown.min(axis=0), shown.max(axis=0)]) + 2 * first.field.spacing * np.array([[-1.0], [1.0]])
-    part = np.array([np.maximum(part[0], whole[0]), np.minimum(part[1], whole[1])])
+    part = _tall(np.array([np.maximum(part[0], whole[0]), np.minimum(part[1], whole[1])]))
     return part if np.ptp(part, axis=0).prod() < PART * np.ptp(whole, axis=0).prod() else whole
+
+
+def _tall(frame: FloatArray) -> FloatArray:
+    """A frame (2, 2) [m] that is as high as labels need."""
+    more = max(0.0, FLATTEST * float(np.ptp(frame[:, 0])) - float(np.ptp(frame[:, 1]))) / 2
+    return frame + np.array([[0.0, -more], [0.0, more]])
 
 
 def _draw_map(
@@ -137,12 +150,12 @@ def _shade(axes: Axes, one: DriftMap, unit: Unit) -> list[Artist]:
     colours |= {k: colour for k, (colour, _) in LOST.items()}
     there = field.numbers >= 0
     grid = np.zeros((*there.shape, 4))
-    grid[there, :3], grid[there, 3] = np.array([to_rgb(colours[k]) for k in numbers[field.numbers[there]].tolist()]), 1.0
+    grid[there] = [to_rgba(colours[k]) for k in numbers[field.numbers[there]].tolist()]
     low = (field.origin - field.spacing / 2) * unit.per_si
     high = low + np.array(there.shape) * field.spacing * unit.per_si
     extent = (low[0], high[0], low[1], high[1])
     axes.imshow(grid.transpose(1, 0, 2), origin="lower", extent=extent, zorder=0, interpolation="nearest")
-    keys: list[Artist] = [Patch(facecolor=colour, label=label) for k, (colour, label) in LOST.items() if (numbers == k).any()]
+    keys: list[Artist] = [Patch(facecolor=LOST[k][0], label=LOST[k][1]) for k in LOST if (numbers == k).any()]
     if (numbers == -1).any():
         keys.append(Patch(facecolor=STAYS, edgecolor="#b0b0b0", label="it stays"))
     return keys

@@ -11,14 +11,16 @@ import numpy as np
 
 from active_surface.studies.drift.basins import Fate
 from active_surface.studies.drift.maps import DriftMap
-from common import draw, percent, quantity
+from common import draw, joined, percent, quantity
 from coupling import whole_file
 from coupling.case import Case
 
 if TYPE_CHECKING:
     import xarray
 
-MANY: Final = 0.05  # of the parts: so many that are still on the move are worth a warning
+MANY: Final = 0.05  # of the parts: so many that still move are worth a warning
+WAY: Final = "median way of runs from places in between"
+GAP: Final = "median from their ends to those of the map"
 ENDS: Final = "number of the end, -1: it stays, -2: it comes off, -3: it leaves the plate"
 
 
@@ -32,7 +34,8 @@ class Drift:
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units."""
         first = self.maps[0]
-        return {"places": len(first.starts), "spacing": first.field.spacing, "maps": [one.figures() for one in self.maps]}
+        maps = [one.figures() for one in self.maps]
+        return {"places": len(first.starts), "spacing": first.field.spacing, "maps": maps, "warnings": self.warnings()}
 
     def lines(self) -> list[tuple[str, str]]:
         """Rows (label, text) to print."""
@@ -49,12 +52,12 @@ class Drift:
         """What limits the trust in it."""
         found, sliding = [], max(one.sliding for one in self.maps)
         if sliding > MANY:
-            found.append(
-                f"{percent(sliding)} of the parts are still on the move when a period ends, but each period of the map begins at rest"
-            )
+            found.append(f"{percent(sliding)} of the parts still move when a period ends, and the next begins at rest")
         if self.case.part.face is not None and any(one.turned.any() for one in self.maps):
-            heading = math.degrees(self.case.part.heading)
-            found.append(f"the part turns, but each period of the map begins at the heading of the case, {heading:g} deg")
+            heading = f"{math.degrees(self.case.part.heading):g} deg"
+            found.append(f"the part turns, but the map's periods begin at the heading of the case, {heading}")
+        if wrong := [one.name for one in self.maps if one.check.is_far]:
+            found.append(f"runs go elsewhere: where parts end, of {joined(wrong)}, is an indication at best")
         return found
 
     def dataset(self) -> xarray.Dataset:
@@ -79,8 +82,8 @@ class Drift:
                 "end_x": by_place([one.basins.reached[:, 0] for one in maps], units="m", long_name="where it ends"),
                 "end_y": by_place([one.basins.reached[:, 1] for one in maps], units="m", long_name="where it ends"),
                 "period": by_group([one.period for one in maps], units="s"),
-                "way": by_group([one.check.way for one in maps], units="m", long_name="median way of runs in between"),
-                "gap": by_group([one.check.gap for one in maps], units="m", long_name="median between their ends and the map's"),
+                "way": by_group([one.check.way for one in maps], units="m", long_name=WAY),
+                "gap": by_group([one.check.gap for one in maps], units="m", long_name=GAP),
             },
             {
                 "group": ("group", [one.name for one in maps]),

@@ -207,7 +207,8 @@ def _checked(ground: _Ground, field: Field, starts: FloatArray, periods: int, te
     periods = min(max(periods, 1), MOST)
     ends, fates = field.carried(places, periods)
     paths = ground.follow(places, periods, tell)
-    theirs, lost = np.array([path.position[-1] for path in paths]), np.array([_fate(path) > Fate.MOVES for path in paths])
+    theirs = np.array([path.position[-1] for path in paths])
+    lost = np.array([_fate(path) > Fate.MOVES for path in paths])
     both = ~lost & (fates <= Fate.MOVES)
     if not both.any():
         return Check(len(paths), periods, otherwise=int((lost != (fates > Fate.MOVES)).sum()))
