@@ -1,0 +1,218 @@
+"""Drift: basins of fields whose ends are known, and maps against single runs."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+from click.testing import CliRunner
+
+from active_surface.cli.program import main
+from active_surface.studies.drift import Fate, Field, basins_of, drift, running_groups
+from active_surface.studies.drift.maps import Check, place_text
+from active_surface.studies.drift.runs import MOST, _ground
+from coupling import SolvedPlates, read_case, run_cases
+from coupling.case import endless_case, groups_of, running_case
+
+SPACING, ACROSS = 2e-5, 20  # m, places to each side
+ARRAY = "examples/array_3x3.toml"
+
+
+def field_of(moved, fates=None):
+    """The field and the places of displacements (n, 2) [spacing] as a function of (n, 2) [spacing]."""
+    along = np.arange(-ACROSS, ACROSS + 1, dtype=float)
+    grid = np.stack(np.meshgrid(along, along, indexing="ij"), axis=-1).reshape(-1, 2)
+    found = np.full(len(grid), int(Fate.MOVES)) if fates is None else fates(grid)
+    ways = moved(grid) * (found == Fate.MOVES)[:, None]
+    found[(found == Fate.MOVES) & ~ways.any(axis=1)] = Fate.STAYS
+    return Field.of(SPACING * grid, SPACING, SPACING * ways, found), SPACING * grid
+
+
+def share(basins, x, y):
+    """The share that ends at a place [spacing], to a tenth of the spacing."""
+    near = [end for end in basins.ends if np.hypot(end.place[0] / SPACING - x, end.place[1] / SPACING - y) < 0.1]
+    return sum(end.share for end in near)
+
+
+@pytest.mark.parametrize("pace", [0.4, 1e-3, 1e-5])
+def test_a_saddle_parts_two_sinks_whatever_the_pace(pace):
+    """Along x away from 0 to sinks at -10 and 10, along y to 0; who starts at x = 0 stays on the line."""
+
+    def moved(place):
+        x, y = place.T
+        return pace * np.stack([np.sign(x) * (10 - abs(x)) / 2, -y], axis=1)
+
+    field, places = field_of(moved)
+    basins = basins_of(field, places)
+    count = 2 * ACROSS + 1
+    sides = np.array([np.sign(end.place[0]) * (abs(end.place[0]) > SPACING) for end in basins.ends])
+    moving = basins.of_start >= 0
+    assert (sides[basins.of_start[moving]] == np.sign(places[moving, 0])).all()
+    assert share(basins, 10, 0) == share(basins, -10, 0) == pytest.approx((ACROSS * count - 1) / count**2)
+    assert share(basins, 0, 0) == pytest.approx((count - 1) / count**2)
+    assert basins.stay == pytest.approx(3 / count**2)  # at the sinks and the saddle
+    assert (basins.come_off, basins.leave) == (0.0, 0.0)
+
+
+def test_parts_end_in_dead_zones_are_lost_at_spots_and_leave_over_the_rim():
+    """All go right by 0.3 spacings: below into a dead zone from x = 12 on, then onto a spot, above over the rim."""
+
+    def fates(place):
+        x, y = place.T
+        return np.select([(y < -5) & (x > 11.5), (abs(y) < 5.5) & (x == 3)], [Fate.STAYS, Fate.COMES_OFF], Fate.MOVES)
+
+    field, places = field_of(lambda place: np.array([0.3, 0.0]) + 0 * place, fates)
+    basins = basins_of(field, places)
+    x, y = (places / SPACING).round().T
+    dead, spot = y < -5, (abs(y) < 5.5) & (x <= 3)
+    expected = np.where(dead & (x > 11.5), -1, np.where(dead, 0, np.where(spot, -2, -3)))
+    assert (basins.of_start == expected).all()
+    assert basins.stay == (expected == -1).mean() and basins.come_off == spot.mean()
+    ends = basins.reached[expected == 0, 0] / SPACING
+    assert (ends > 11.4).all() and (ends < 12.3).all()  # at its edge, beyond by no more than a period
+    assert len(basins.ends) == 1 and basins.ends[0].extent == pytest.approx(14 * SPACING)  # all along it
+
+
+def test_to_and_fro_ends_in_its_middle():
+    """A period carries a part from where it is to the other side of the middle, by 0.1 % less far each time."""
+    field, places = field_of(lambda place: -1.999 * place)
+    basins = basins_of(field, places)
+    assert share(basins, 0, 0) == pytest.approx(1 - 1 / len(places))
+
+
+def test_many_periods_are_the_map_again_and_again():
+    field, places = field_of(lambda place: -0.1 * place)
+    within = places[::7] + 0.3 * SPACING * (abs(places[::7]) < 19 * SPACING)
+    ends, fates = field.carried(within, 5)
+    assert np.allclose(ends, 0.9**5 * within, atol=1e-12 * SPACING)
+    assert (fates <= Fate.MOVES).all()
+
+
+def test_places_have_digits_that_mean_something():
+    assert place_text((-1.317e-4, -5.6e-17), 1.5e-5) == "(-131.7, 0.0) um"
+    assert place_text((2.58e-3, -1e-9), 2.7e-4) == "(2580, 0) um"
+
+
+def test_the_check_says_how_far_runs_go():
+    assert Check(8, 20, 81e-6, 21e-6).text == (
+        "8 runs of 20 periods from places in between: they go 81 um and end 21 um from where the map says, medians"
+    )
+    assert Check(3, 1, otherwise=2).text.endswith("2 lost where it keeps them, or kept where it loses them")
+    assert Check(3, 1).text.endswith("they are lost, as the map says")
+    assert Check(8, 20, 2e-6, 3e-6).is_far and not Check(8, 20, 2e-6, 0.5e-6).is_far and not Check().is_far
+
+
+def test_groups_of_a_lattice():
+    case = read_case("examples/device.toml")
+    columns, rows = groups_of(case, "columns"), groups_of(case, "rows")
+    assert list(columns) == ["column 1", "column 2", "column 3"] and list(rows) == ["row 1", "row 2", "row 3"]
+    for along, groups in ((0, columns), (1, rows)):
+        places = [{round(case.actuators[k].position[along], 9) for k in group} for group in groups.values()]
+        assert [sorted(one) for one in places] == [[-6e-4], [0.0], [6e-4]]
+    assert sorted(k for group in columns.values() for k in group) == list(range(9))
+    assert groups_of(case, "all") == {"all": tuple(range(9))}
+    assert groups_of(case, "each")["actuator 8"] == (8,)
+    alone = running_case(case, columns["column 2"])
+    assert [k for k, one in enumerate(alone.actuators) if one.stroke] == list(columns["column 2"])
+    assert list(running_groups(alone, "columns")) == ["column 2"]  # groups at rest are left out
+
+
+ACTUATOR = {"position": ["0 um", "0 um"], "stroke": "50 um", "frequency": "500 Hz"}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"frequency": "500 * sqrt(2) Hz"}, "CASE must have drives with a common period"),
+        ({"cycle": "up"}, 'cycle must not be "up" here, as the drive must repeat'),
+        ({"stroke": "0 um"}, "CASE must have drives that move"),
+        ("film", "CASE must not have a film of air"),
+        ("platform", "CASE must have a plate"),
+        ("columned", "--groups must be"),
+        ("roomless", "--across must let the part lie on the plate"),
+    ],
+)
+def test_the_command_refuses_what_has_no_drift(tmp_path, change, said):
+    text, options = open(ARRAY).read(), []
+    if isinstance(change, dict):
+        last = text.rindex("[[actuators]]")
+        (name, value) = next(iter(change.items()))
+        if value == "0 um":
+            text = text.replace('"50 um"\nfrequency', '"0 um"\nfrequency')
+        elif name == "cycle":
+            text = text[:last] + text[last:].replace("delay", f'cycle = "{value}"\ndelay', 1)
+        else:
+            text = text[:last] + text[last:].replace('"500 Hz"', f'"{value}"', 1)
+    elif change == "film":
+        text = text.replace('pressure = "0 Pa"', "film = true").replace('mass = "2e-9 kg"', 'mass = "2e-9 kg"\nsize = "50 um"')
+    elif change == "platform":
+        text = open("examples/shaker.toml").read().replace("shaker.csv", "examples/shaker.csv")
+    elif change == "columned":
+        options = ["--groups", "columned"]
+    else:
+        text = open("examples/annulus.toml").read()
+        options = ["--across", "1"]
+    file = tmp_path / "case.toml"
+    file.write_text(text)
+    if change == "platform":
+        (tmp_path / "examples").mkdir()
+        (tmp_path / "examples/shaker.csv").write_text(open("examples/shaker.csv").read())
+    result = CliRunner().invoke(main, ["drift", str(file), "-o", str(tmp_path / "out"), "--quiet", *options])
+    assert result.exit_code == 2 and said in result.stderr, result.output + result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.fixture(scope="module")
+def found():
+    """The map of the array of three by three, whose rows are the mirror images of each other."""
+    return drift(read_case(ARRAY), across=15)
+
+
+@pytest.mark.compiled
+def test_mirrored_arrays_have_mirrored_maps(found):
+    one = found.maps[0]
+    places = {(round(x, 9), round(y, 9)): k for k, (x, y) in enumerate(one.starts.tolist())}
+    mirror = [places[round(x, 9), round(-y, 9)] for x, y in one.starts.tolist()]
+    assert (one.fates == one.fates[mirror]).all() and (one.fates == Fate.MOVES).sum() > 50
+    size = np.abs(one.moved).max()
+    assert one.moved[mirror] == pytest.approx(one.moved * [1, -1], abs=1e-3 * size)
+    assert np.abs(one.moved[:, 0] + one.moved[::-1, 0]).max() > 0.01 * size  # not so about the other axis: it starts later
+
+
+@pytest.mark.compiled
+def test_files_hold_the_map(found, tmp_path):
+    data, picture = found.write(tmp_path)
+    one = found.maps[0]
+    with xarray.open_dataset(data, engine="h5netcdf") as read:
+        assert read["dx"].dims == ("group", "place") and read["group"].values.tolist() == ["all"]
+        assert (read["dy"].values[0] == one.moved[:, 1]).all() and (read["x"].values == one.starts[:, 0]).all()
+        assert (read["end"].values[0] == one.basins.of_start).all()
+    assert picture.stat().st_size > 20_000
+    json.dumps(found.figures(), allow_nan=False)
+    rows = found.lines()
+    assert rows[1][0] == "all" and " end at (" in rows[1][1] and "e-" not in rows[1][1]
+
+
+def test_small_fields_are_drawn_over_all_of_the_plate():
+    pass
+
+
+@pytest.fixture(scope="module")
+def single():
+    """Places of a map, of which some never slip, and runs of a period from there with a tight tolerance."""
+    case = read_case(ARRAY)
+    one = drift(case, across=30).maps[0]
+    chosen = np.random.default_rng(7).choice(len(one.starts), 200, replace=False)
+    update = {"duration": one.period, "start": "steady", "tolerance": 1e-11}
+    case = case.model_copy(update={"run": case.run.model_copy(update=update)})
+    cases = [case.vary({"part.position": place}) for place in one.starts[chosen].tolist()]
+    return one, chosen, [result.trajectory for result in run_cases(cases)]
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_a_map_is_what_single_runs_do(single):
+    one, chosen, paths = single
+    ways = np.array([path.position[-1] - path.position[0] for path in paths])
+    assert (one.fates[chosen] == Fate.MOVES).sum() > 50 and (one.fates[chosen] == Fate.STAYS).sum() > 50
+    assert ways == pytest.approx(one.moved[chosen], abs=1e-4 * one.field.spacing)
