@@ -17,7 +17,7 @@ from coupling.borders import KEPT
 from coupling.case import endless_case, groups_of, running_case
 from particle import Micropart, simulate
 
-SPACING, ACROSS = 2e-5, 20  # m, places to each side
+SPACING, ACROSS = 2e-5, 12  # m, places to each side
 ARRAY = "examples/array_3x3.toml"
 
 
@@ -39,11 +39,11 @@ def share(basins, x, y):
 
 @pytest.mark.parametrize("pace", [0.4, 1e-3, 1e-5])
 def test_a_saddle_parts_two_sinks_whatever_the_pace(pace):
-    """Along x away from 0 to sinks at -10 and 10, along y to 0; who starts at x = 0 stays on the line."""
+    """Along x away from 0 to sinks at -6 and 6, along y to 0; who starts at x = 0 stays on the line."""
 
     def moved(place):
         x, y = place.T
-        return pace * np.stack([np.sign(x) * (10 - abs(x)) / 2, -y], axis=1)
+        return pace * np.stack([np.sign(x) * (6 - abs(x)) / 2, -y], axis=1)
 
     field, places = field_of(moved)
     basins = basins_of(field, places)
@@ -51,41 +51,41 @@ def test_a_saddle_parts_two_sinks_whatever_the_pace(pace):
     sides = np.array([np.sign(end.place[0]) * (abs(end.place[0]) > SPACING) for end in basins.ends])
     moving = basins.of_start >= 0
     assert (sides[basins.of_start[moving]] == np.sign(places[moving, 0])).all()
-    assert share(basins, 10, 0) == share(basins, -10, 0) == pytest.approx((ACROSS * count - 1) / count**2)
+    assert share(basins, 6, 0) == share(basins, -6, 0) == pytest.approx((ACROSS * count - 1) / count**2)
     assert share(basins, 0, 0) == pytest.approx((count - 1) / count**2)
     assert basins.stay == pytest.approx(3 / count**2)  # at the sinks and the saddle
     assert (basins.come_off, basins.leave) == (0.0, 0.0)
 
 
 def test_parts_end_in_dead_zones_are_lost_at_spots_and_leave_over_the_rim():
-    """All go right by 0.3 spacings: below into a dead zone from x = 12 on, then onto a spot, above over the rim."""
+    """All go right by 0.3 spacings: below into a dead zone from x = 8 on, then onto a spot, above over the rim."""
 
     def fates(place):
         x, y = place.T
-        return np.select([(y < -5) & (x > 11.5), (abs(y) < 5.5) & (x == 3)], [Fate.STAYS, Fate.COMES_OFF], Fate.MOVES)
+        return np.select([(y < -3.5) & (x > 7.5), (abs(y) < 3.5) & (x == 3)], [Fate.STAYS, Fate.COMES_OFF], Fate.MOVES)
 
     field, places = field_of(lambda place: np.array([0.3, 0.0]) + 0 * place, fates)
     basins = basins_of(field, places)
     x, y = (places / SPACING).round().T
-    dead, spot = y < -5, (abs(y) < 5.5) & (x <= 3)
-    expected = np.where(dead & (x > 11.5), -1, np.where(dead, 0, np.where(spot, -2, -3)))
+    dead, spot = y < -3.5, (abs(y) < 3.5) & (x <= 3)
+    expected = np.where(dead & (x > 7.5), -1, np.where(dead, 0, np.where(spot, -2, -3)))
     assert (basins.of_start == expected).all()
     assert basins.stay == (expected == -1).mean() and basins.come_off == spot.mean()
     ends = basins.reached[expected == 0, 0] / SPACING
-    assert (ends > 11.4).all() and (ends < 12.3).all()  # at its edge, beyond by no more than a period
-    assert len(basins.ends) == 1 and basins.ends[0].extent == pytest.approx(14 * SPACING)  # all along it
+    assert (ends > 7.4).all() and (ends < 8.3).all()  # at its edge, beyond by no more than a period
+    assert len(basins.ends) == 1 and basins.ends[0].extent == pytest.approx(8 * SPACING)  # all along it
 
 
 def test_to_and_fro_ends_in_its_middle():
-    """A period carries a part from where it is to the other side of the middle, by 0.1 % less far each time."""
-    field, places = field_of(lambda place: -1.999 * place)
+    """A period carries a part from where it is to the other side of the middle, by 2 % less far each time."""
+    field, places = field_of(lambda place: -1.98 * place)
     basins = basins_of(field, places)
     assert share(basins, 0, 0) == pytest.approx(1 - 1 / len(places))
 
 
 def test_many_periods_are_the_map_again_and_again():
     field, places = field_of(lambda place: -0.1 * place)
-    within = places[::7] + 0.3 * SPACING * (abs(places[::7]) < 19 * SPACING)
+    within = places[::7] + 0.3 * SPACING * (abs(places[::7]) < 11 * SPACING)
     ends, fates = field.carried(within, 5)
     assert np.allclose(ends, 0.9**5 * within, atol=1e-12 * SPACING)
     assert (fates <= Fate.MOVES).all()
@@ -125,6 +125,10 @@ def last(old, new):
     return new.join(Path(ARRAY).read_text().rsplit(old, 1))
 
 
+LARGE = (
+    'mass = "2e-9 kg"\nposition = ["50 um", "30 um"]',
+    'footprint = "rectangle"\nsides = ["380 um", "380 um"]\nmass = "2e-9 kg"\nposition = ["0 um", "0 um"]',
+)  # a part that has room only in the middle
 REFUSED = {
     "period": (last('"500 Hz"', '"707.1067811865 Hz"'), [], "CASE must have drives with a common period"),
     "up": (last('delay = "1.6 ms"', 'cycle = "up"'), [], 'actuators[8].cycle must not be "up" here'),
@@ -169,7 +173,7 @@ def test_the_command_refuses_a_platform():
 @pytest.fixture(scope="module")
 def found():
     """The map of the array of three by three, whose rows are the mirror images of each other."""
-    return drift(read_case(ARRAY), across=15)
+    return drift(read_case(ARRAY), across=12)
 
 
 @pytest.mark.compiled
@@ -177,7 +181,7 @@ def test_mirrored_arrays_have_mirrored_maps(found):
     one = found.maps[0]
     places = {(round(x, 9), round(y, 9)): k for k, (x, y) in enumerate(one.starts.tolist())}
     mirror = [places[round(x, 9), round(-y, 9)] for x, y in one.starts.tolist()]
-    assert (one.fates == one.fates[mirror]).all() and (one.fates == Fate.MOVES).sum() > 50
+    assert (one.fates == one.fates[mirror]).all() and (one.fates == Fate.MOVES).sum() > 30
     size = np.abs(one.moved).max()
     assert one.moved[mirror] == pytest.approx(one.moved * [1, -1], abs=1e-3 * size)
     assert np.abs(one.moved[:, 0] + one.moved[::-1, 0]).max() > 0.01 * size  # columns start at other times
