@@ -125,10 +125,11 @@ def last(old, new):
     return new.join(Path(ARRAY).read_text().rsplit(old, 1))
 
 
+SIDE = '["380 um", "380 um"]'  # of a part that has room only in the middle
 LARGE = (
     'mass = "2e-9 kg"\nposition = ["50 um", "30 um"]',
-    'footprint = "rectangle"\nsides = ["380 um", "380 um"]\nmass = "2e-9 kg"\nposition = ["0 um", "0 um"]',
-)  # a part that has room only in the middle
+    f'footprint = "rectangle"\nsides = {SIDE}\nthickness = "10 um"\nmass = "2e-9 kg"\nposition = ["0 um", "0 um"]',
+)
 REFUSED = {
     "period": (last('"500 Hz"', '"707.1067811865 Hz"'), [], "CASE must have drives with a common period"),
     "up": (last('delay = "1.6 ms"', 'cycle = "up"'), [], 'actuators[8].cycle must not be "up" here'),
@@ -143,11 +144,7 @@ REFUSED = {
         ["--groups", "diagonals"],
         '--groups must be "all", "columns",',
     ),
-    "room": (
-        Path("examples/annulus.toml").read_text(),
-        ["--across", "1"],
-        "--across must let the part lie",
-    ),
+    "room": (Path(ARRAY).read_text().replace(*LARGE), ["--across", "2"], "--across must let the part lie"),
 }
 
 
