@@ -14,9 +14,8 @@ from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.drift.basins import STILL, Fate, Field
 from active_surface.studies.drift.maps import Check, DriftMap
 from active_surface.studies.drift.result import Drift
-from active_surface.studies.feasibility.area import moving
+from active_surface.studies.feasibility import moving, on_plate, responses_of, resting_of, squares_within
 from active_surface.studies.feasibility.counting import HANGS, RESTS, find_states
-from active_surface.studies.feasibility.places import on_plate, responses_of, resting_of, squares_within
 from coupling import (
     PathTask,
     Progress,
