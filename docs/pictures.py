@@ -24,7 +24,7 @@ from tolerance_pictures import draw_tolerance
 from active_surface.cli import main
 from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.studies import read_study, run_study
-from active_surface.studies.drift import drift
+from active_surface.studies.drifts import drift
 from active_surface.views import animate
 from coupling import read_case, run_case
 from coupling.display import display_mesh, onto_plate

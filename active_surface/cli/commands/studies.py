@@ -127,8 +127,8 @@ def drift(
     how far runs end from that. Writes NAME.drift.nc and NAME.drift.png.
     """
     parsed = read(case)
-    from active_surface.studies.drift import ACROSS, STAGES, running_groups
-    from active_surface.studies.drift import drift as find
+    from active_surface.studies.drifts import ACROSS, STAGES, running_groups
+    from active_surface.studies.drifts import drift as find
 
     with stages(STAGES * len(running_groups(parsed, groups))) as bar:
         found = find(parsed, groups, ACROSS if across is None else across, threads, bar)

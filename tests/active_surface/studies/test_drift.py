@@ -9,9 +9,9 @@ import xarray
 from click.testing import CliRunner
 
 from active_surface.cli.program import main
-from active_surface.studies.drift import Fate, Field, basins_of, drift, running_groups
-from active_surface.studies.drift.maps import Check, place_text
-from active_surface.studies.drift.runs import _ground
+from active_surface.studies.drifts import Fate, Field, basins_of, drift, running_groups
+from active_surface.studies.drifts.maps import Check, place_text
+from active_surface.studies.drifts.runs import _ground
 from coupling import SolvedPlates, build_friction, build_surface, read_case, silent
 from coupling.borders import KEPT
 from coupling.case import endless_case, groups_of, running_case

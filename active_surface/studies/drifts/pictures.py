@@ -15,9 +15,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.drift.basins import Fate
-from active_surface.studies.drift.maps import DriftMap
-from active_surface.studies.drift.result import Drift
+from active_surface.studies.drifts.basins import Fate
+from active_surface.studies.drifts.maps import DriftMap
+from active_surface.studies.drifts.result import Drift
 from common import Drawing, Unit, draw, percent, unit_for
 from coupling.pictures import PlateView, clear_labels, draw_plate, put_keys, put_label, put_title
 from particle import HALO

@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.studies.drift.basins import Basin, Basins, Field, basins_of
+from active_surface.studies.drifts.basins import Basin, Basins, Field, basins_of
 from common import count, percent, quantity
 from meshes import Outline
 

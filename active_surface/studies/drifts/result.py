@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from active_surface.studies.drift.basins import Fate
-from active_surface.studies.drift.maps import DriftMap
+from active_surface.studies.drifts.basins import Fate
+from active_surface.studies.drifts.maps import DriftMap
 from common import draw, joined, percent, quantity
 from coupling import whole_file
 from coupling.case import Case

@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
-from active_surface.studies.drift.basins import STILL, Fate, Field
-from active_surface.studies.drift.maps import Check, DriftMap
-from active_surface.studies.drift.result import Drift
+from active_surface.studies.drifts.basins import STILL, Fate, Field
+from active_surface.studies.drifts.maps import Check, DriftMap
+from active_surface.studies.drifts.result import Drift
 from active_surface.studies.feasibility import moving, on_plate, responses_of, resting_of, squares_within
 from active_surface.studies.feasibility.counting import HANGS, RESTS, find_states
 from coupling import (
@@ -21,6 +21,8 @@ from coupling import (
     Progress,
     ProgressCallback,
     SolvedPlates,
+    borders,
+    build_drives,
     build_friction,
     build_part,
     follow,
@@ -28,9 +30,7 @@ from coupling import (
     one_blas_thread,
     silent,
 )
-from coupling.borders import KEPT, at_rest
 from coupling.case import Case, PlateCase, endless_case, groups_of, running_case
-from coupling.drives import build_drives, travel
 from coupling.scene import PlateScene
 from coupling.stretch import schedule_of
 from coupling.vibration import always_running
@@ -102,7 +102,7 @@ def running_groups(case: Case, groups: str | Mapping[str, Sequence[int]]) -> dic
     if case.air is not None and case.air.film:
         raise ValueError("Input case of drift must not have a film of air, which remembers the periods before")
     chosen = groups_of(case, groups) if isinstance(groups, str) else {name: tuple(one) for name, one in groups.items()}
-    moves = {k for k, drive in enumerate(build_drives(case)) if travel(drive) > 0}
+    moves = {k for k, drive in enumerate(build_drives(case)) if drive.segments().coefficients[:, 1:].any()}
     running = {name: numbers for name, numbers in chosen.items() if not moves.isdisjoint(numbers)}
     if not running:
         raise ValueError("Input case of drift must have drives that move; all strokes and forces are 0")
@@ -158,7 +158,7 @@ class _Ground:
 
     def resting(self, law: Contact) -> PartAtRest:
         """The part at rest under a friction law."""
-        return at_rest(self.case, self.scene.surface, build_part(self.case), law)
+        return borders.at_rest(self.case, self.scene.surface, build_part(self.case), law)
 
     def follow(self, places: FloatArray, periods: int, tell: ProgressCallback = no_progress) -> list[Trajectory]:
         """The paths from rest at places (k, 2) [m], over so many periods."""
@@ -218,4 +218,4 @@ def _checked(ground: _Ground, field: Field, starts: FloatArray, periods: int, te
 def _fate(path: Trajectory) -> Fate:
     if path.outcome is Outcome.LEFT_PLATE:
         return Fate.LEAVES
-    return Fate.MOVES if path.outcome in KEPT else Fate.COMES_OFF
+    return Fate.MOVES if path.outcome in borders.KEPT else Fate.COMES_OFF
