@@ -13,7 +13,7 @@ SAME_LINE: Final = 1e-3  # of an array's longer side: actuators as near to each 
 
 
 def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
-    """The numbers of the actuators of each group by its name: all, columns from the left, rows from below, or each.
+    """The actuators' numbers of each group by its name: all; each column from the left; each row from below; or each.
 
     Raises ValueError for another kind.
     """
@@ -24,20 +24,19 @@ def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
         return {"all": tuple(range(count))}
     if kind == "each":
         return {f"actuator {k}": (k,) for k in range(count)}
-    places = [one.position for one in case.actuators]
-    near = SAME_LINE * max(max(along) - min(along) for along in zip(*places, strict=True))
-    lines = _lines([place[0 if kind == "columns" else 1] for place in places], near)
+    sides = list(zip(*(one.position for one in case.actuators), strict=True))
+    near = SAME_LINE * max(max(side) - min(side) for side in sides)
+    lines = _lines(sides[0 if kind == "columns" else 1], near)
     return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines, 1)}
 
 
 def _lines(along: Sequence[float], near: float) -> list[tuple[int, ...]]:
     """The numbers of those with about the same coordinate, from the least coordinate on."""
-    lines: list[list[int]] = []
-    for k in sorted(range(len(along)), key=along.__getitem__):
-        if lines and along[k] - along[lines[-1][-1]] <= near:
-            lines[-1].append(k)
-        else:
-            lines.append([k])
+    order, lines = sorted(range(len(along)), key=along.__getitem__), list[list[int]]()
+    for k in order:
+        if not lines or along[k] - along[lines[-1][-1]] > near:
+            lines.append([])
+        lines[-1].append(k)
     return [tuple(sorted(line)) for line in lines]
 
 

@@ -12,11 +12,14 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from active_surface.arrays import BoolArray, FloatArray, IntArray
+from active_surface.arrays import FloatArray, IntArray
 
-STEP: Final = 0.2  # of the spacing: the way between two looks at the drift
-STILL: Final = 1e-4  # of the spacing, in a period: less is no drift
-FARTHEST: Final = 60.0  # times the plate's longer side: the way after which a part is where it ends
+STEP: Final = 0.2  # of the spacing: the longest way of many periods between two looks at the drift
+SLOWER: Final = 0.5  # times that way, after a look at which the part turned back
+FASTER: Final = 1.2  # after another
+STILL: Final = 1e-6  # of the spacing, in a period: less is no drift
+LOOKS: Final = 64  # after which a part ends that is on average where it was in the same number before
+FARTHEST: Final = 60.0  # times the starts' extent: the way after which a part ends at the latest
 JOINED: Final = 1.5  # spacings: ends as near to each other are of one basin
 
 
@@ -59,7 +62,7 @@ class Field:
         most = np.zeros(len(points))
         for corner in ((0, 0), (1, 0), (0, 1), (1, 1)):
             cell = low + corner
-            inside = ((cell >= 0) & (cell < self.numbers.shape)).all(axis=1)
+            inside = np.all((cell >= 0) & (cell < self.numbers.shape), axis=1)
             number = np.where(inside, self.numbers[tuple(np.where(inside[:, None], cell, 0).T)], -1)
             share = np.where(number >= 0, (1 - np.abs(place - cell)).prod(axis=1), 0.0)
             nearest, most = np.where(share > most, number, nearest), np.maximum(share, most)
@@ -83,46 +86,60 @@ class Basin(NamedTuple):
     """A place, or an area, at which parts end, and the share of starts that are carried there."""
 
     place: tuple[float, float]  # m, the middle of the ends
-    extent: float  # m, of the ends; within about a spacing it is a point
+    extent: float  # m, of the ends along x or y, the larger; within about a spacing it is a point
     share: float
 
 
 @dataclass(frozen=True, eq=False)
 class Basins:
-    """Where parts end in the long run; shares are of all starts."""
+    """Where parts end in the long run, carried on by the drift of where they are; shares are of all starts."""
 
     stay: float  # share that never moves
-    come_off: float
-    leave: float
-    ends: tuple[Basin, ...]  # of those that moved, the largest share first
-    of_start: IntArray  # (n,) the number of the end of each start; -1: it stays, -2: it comes off, -3: it leaves
+    come_off: float  # or tip, or are overloaded
+    leave: float  # over the rim
+    ends: tuple[Basin, ...]  # of those that move and are kept, the largest share first
+    of_start: IntArray  # (n,) which of the ends each start has; -1: it stays, -2: it comes off, -3: it leaves
+    reached: FloatArray  # (n, 2) m, where the part of each start ends, or is lost
 
 
 def basins_of(field: Field, starts: FloatArray) -> Basins:
-    """Follow a drift from starts (n, 2) [m] until each part stays, is lost, or goes about where others do.
-
-    Where a period carries it less than STEP of the spacing, many periods are taken at once.
-    """
+    """Follow a drift from starts (n, 2) [m] until each part stays, is lost, or is where it was before, on average."""
     _, own = field.at(starts)
-    points, fates, live = starts.copy(), own.copy(), own == Fate.MOVES
-    extent = float(np.ptp(starts, axis=0).max()) + field.spacing
-    for _ in range(math.ceil(FARTHEST * extent / (STEP * field.spacing))):
-        if not live.any():
-            break
-        moved, now = field.at(points[live])
-        length = np.hypot(*moved.T)
-        points[live] += moved * np.maximum(1.0, STEP * field.spacing / np.maximum(length, 1e-300))[:, None] * (
-            length > STILL * field.spacing
-        )[:, None]
-        fates[live] = np.maximum(fates[live], now)
-        rows = np.flatnonzero(live)
-        live[rows[(length <= STILL * field.spacing) | (now > Fate.MOVES)]] = False
+    reached, fates, moving = starts.copy(), own.copy(), np.flatnonzero(own == Fate.MOVES)
+    reached[moving], fates[moving] = _followed(field, starts[moving])
     kept = fates == Fate.MOVES
     numbers = np.select([own == Fate.STAYS, fates == Fate.COMES_OFF, fates == Fate.LEAVES], [-1, -2, -3], 0)
-    ends, of_kept = _joined(points[kept], field.spacing, len(starts))
-    numbers[kept] = of_kept
-    shares = [float((numbers == k).mean()) for k in (-1, -2, -3)]
-    return Basins(*shares, ends, numbers)
+    ends, numbers[kept] = _joined(reached[kept], field.spacing, len(starts))
+    stay, come_off, leave = (float((numbers == k).mean()) for k in (-1, -2, -3))
+    return Basins(stay, come_off, leave, ends, numbers, reached)
+
+
+def _followed(field: Field, points: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Where moving parts end (k, 2) [m], to and fro in its middle, and their fates (k,).
+
+    Where a period carries a part less than STEP of the spacing, many are taken at once, fewer where it turns back. A
+    part that comes into a dead zone stays there; a lost one is where it was lost.
+    """
+    points, fates, live = points.copy(), np.full(len(points), int(Fate.MOVES)), np.arange(len(points))
+    ends, farthest = points.copy(), STEP * field.spacing
+    way, reach = np.zeros(points.shape), np.full(len(points), farthest)
+    extent = float(np.ptp(points, axis=0).max(initial=0.0)) + field.spacing
+    for _ in range(math.ceil(FARTHEST * extent / (LOOKS * farthest))):
+        total = np.zeros((len(live), 2))
+        for _ in range(LOOKS):
+            moved, now = field.at(points[live])
+            length = np.hypot(*moved.T)
+            back = (moved * way[live]).sum(axis=1) < 0
+            reach[live] = np.where(back, SLOWER * reach[live], np.minimum(FASTER * reach[live], farthest))
+            times = np.maximum(1.0, reach[live] / np.maximum(length, 1e-300)) * (length > STILL * field.spacing)
+            way[live], fates[live] = moved, np.maximum(fates[live], now)
+            points[live] += times[:, None] * moved
+            total += points[live]
+        before, ends[live] = ends[live], total / LOOKS
+        live = live[np.hypot(*(ends[live] - before).T) > LOOKS * STILL * field.spacing]
+        if not len(live):
+            break
+    return ends, fates
 
 
 def _joined(points: FloatArray, spacing: float, count: int) -> tuple[tuple[Basin, ...], IntArray]:
@@ -142,8 +159,3 @@ def _joined(points: FloatArray, spacing: float, count: int) -> tuple[tuple[Basin
         x, y = own.mean(axis=0).tolist()
         basins.append(Basin((x, y), float(np.ptp(own, axis=0).max()), len(own) / count))
     return tuple(basins), labels
-
-
-def kept(fates: IntArray) -> BoolArray:
-    """Whether parts stay on the plate."""
-    return fates <= Fate.MOVES
