@@ -68,4 +68,4 @@ from coupling.case.values import (
     read_columns,
     unreadable,
 )
-from coupling.case.writing import json_schema, template, write_case, write_edited
+from coupling.case.writing import Difference, differences, json_schema, template, write_case, write_edited
