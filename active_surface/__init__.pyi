@@ -105,8 +105,13 @@ from .steering import (
     read_task as read_task,
 )
 from .studies import (
+    Basin as Basin,
+    Basins as Basins,
+    Drift as Drift,
+    DriftMap as DriftMap,
     Study as Study,
     Sweep as Sweep,
+    drift as drift,
     read_study as read_study,
     run_study as run_study,
 )

@@ -23,6 +23,7 @@ from coupling.case.friction import (
     TableCase,
     has_known_law,
 )
+from coupling.case.groups import endless_case, groups_of, running_case
 from coupling.case.part import PART_NAME, PartCase
 from coupling.case.plates import (
     INERTIA,
