@@ -55,10 +55,11 @@ class DriftMap:
     name: str  # of the group of actuators
     actuators: tuple[int, ...]  # that run; the others hold the plate where it is
     period: float  # s
+    after: int  # periods from rest before that of the map
     field: Field
     starts: FloatArray  # (n, 2) m
     turned: FloatArray  # (n,) rad, in a period; 0 of a point
-    sliding: float  # share of the parts that are still on the move when the period ends
+    sliding: float  # share of the parts that are still on the move when the first period ends
     check: Check
     outline: Outline
     places: FloatArray  # (N, 2) m, of all actuators
@@ -90,6 +91,7 @@ class DriftMap:
             "group": self.name,
             "actuators": list(self.actuators),
             "period": self.period,
+            "after": self.after,
             "fastest": self.speed,
             "stay": basins.stay,
             "come_off": basins.come_off,
@@ -98,6 +100,13 @@ class DriftMap:
             "still_sliding": self.sliding,
             "check": {name: None if math.isnan(value) else value for name, value in check.items()},
         }
+
+    @property
+    def later(self) -> str:
+        """Which period it is, in words, where it is not the first: many parts still move when that ends."""
+        return f" ({percent(self.sliding)} still move when the first ends; this is no. {self.after + 1})" * (
+            self.after > 0
+        )
 
     @property
     def text(self) -> str:

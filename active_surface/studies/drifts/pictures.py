@@ -69,7 +69,7 @@ def draw_drift(found: Drift) -> Figure:
         bar.long_axis.set_major_formatter("{x:g}")
         bar.long_axis.set_minor_formatter(NullFormatter())
     some = "" if len(maps) == len(found.maps) else f" (the first {len(maps)} of {len(found.maps)} groups)"
-    what = "where a period of the drives carries a part from rest, and where it ends"
+    what = "where a period of the drives carries a part, and where it ends"
     put_title(figure, f"{found.case.name}: {what}{some}")
     put_keys(figure, keys)
     for _ in range(2):  # the layout settles at the second

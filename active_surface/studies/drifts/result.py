@@ -11,14 +11,13 @@ import numpy as np
 
 from active_surface.studies.drifts.basins import Fate
 from active_surface.studies.drifts.maps import DriftMap
-from common import draw, joined, percent, quantity
+from common import draw, joined, quantity
 from coupling import whole_file
 from coupling.case import Case
 
 if TYPE_CHECKING:
     import xarray
 
-MANY: Final = 0.05  # of the parts: so many that still move are worth a warning
 WAY: Final = "median way of runs from places in between"
 GAP: Final = "median from their ends to those of the map"
 ENDS: Final = "number of the end, -1: it stays, -2: it comes off, -3: it leaves the plate"
@@ -43,16 +42,14 @@ class Drift:
         spacing = quantity(first.field.spacing, "m")
         rows = [("places", f"{len(first.starts)}, {spacing} apart, each from rest")]
         for one in self.maps:
-            rows.append((one.name, f"in {quantity(one.period, 's')}, the period of the drives, {one.text}"))
+            rows.append((one.name, f"in {quantity(one.period, 's')}, the period of the drives{one.later}, {one.text}"))
             if one.check.runs:
                 rows.append(("", one.check.text))
         return rows
 
     def warnings(self) -> list[str]:
         """What limits the trust in it."""
-        found, sliding = [], max(one.sliding for one in self.maps)
-        if sliding > MANY:
-            found.append(f"{percent(sliding)} of the parts still move when a period ends, and the next begins at rest")
+        found = []
         if self.case.part.face is not None and any(one.turned.any() for one in self.maps):
             heading = f"{math.degrees(self.case.part.heading):g} deg"
             found.append(f"the part turns, but the map's periods begin at the heading of the case, {heading}")

@@ -9,7 +9,7 @@ import xarray
 from click.testing import CliRunner
 
 from active_surface.cli.program import main
-from active_surface.studies.drifts import Fate, Field, basins_of, drift, running_groups
+from active_surface.studies.drifts import Fate, Field, basins_of, drift, running_groups, runs
 from active_surface.studies.drifts.maps import Check, place_text
 from active_surface.studies.drifts.runs import _ground
 from coupling import SolvedPlates, build_friction, build_surface, read_case, silent
@@ -202,7 +202,9 @@ def test_files_hold_the_map(found, tmp_path):
 def single():
     """A map, and runs over its periods from 200 of its places, with a tight tolerance."""
     case = endless_case(read_case(ARRAY))
-    one = drift(case, across=30).maps[0]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runs, "SLIDING", 1.0)  # so that the map is of the first period
+        one = drift(case, across=30).maps[0]
     steady = case.model_copy(update={"run": case.run.model_copy(update={"start": "steady", "duration": one.period})})
     surface, law = build_surface(steady), build_friction(case)
     chosen = np.random.default_rng(7).choice(len(one.starts), 200, replace=False)
@@ -237,16 +239,22 @@ def test_what_never_slips_does_not_move_in_a_run(single):
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_ends_of_runs_from_in_between_are_near_those_of_the_map(single):
-    """Measured: of 40, the median gap is 0.28 of the median way; half of the parts still move at a period's end."""
-    one, _, run = single
+    """Half of the parts still move when the first period ends; a later one says better where they go.
+
+    Measured: of 40, the median gap is 0.08 of the median way; by the map of the first period 0.22.
+    """
+    first, _, run = single
+    one = drift(read_case(ARRAY), across=30).maps[0]
+    assert one.after > 0 and one.sliding > 0.4
     chance = np.random.default_rng(3)
     movers = one.starts[one.fates == Fate.MOVES]
     places = movers[chance.choice(len(movers), 40, replace=False)] + one.field.spacing * chance.uniform(
         -0.5, 0.5, (40, 2)
     )
     ends, fates = one.field.carried(places, 20)
+    at_first, _ = first.field.carried(places, 20)
     paths = [run(tuple(place), 20) for place in places]
     assert (fates <= Fate.MOVES).all() and all(path.outcome in KEPT for path in paths)
     theirs = np.array([path.position[-1] for path in paths])
-    gap, way = (np.median(np.hypot(*(theirs - other).T)) for other in (ends, places))
-    assert way > 2 * one.field.spacing and gap < 0.4 * way, (gap, way, gap / way)
+    gap, of_first, way = (np.median(np.hypot(*(theirs - other).T)) for other in (ends, at_first, places))
+    assert way > 2 * one.field.spacing and gap < 0.15 * way and gap < 0.6 * of_first, (gap / way, of_first / way)
