@@ -133,10 +133,13 @@ def test_a_click_on_the_curves_puts_the_clock_there(open_page):
     )
     chart = browser.find_element(By.ID, "curves")
     size = chart.size
-    ActionChains(browser).move_to_element_with_offset(chart, x - size["width"] / 2, y - size["height"] / 2).perform()
-    wait(lambda: chart.find_elements(By.CLASS_NAME, "hovertext"))  # a click goes to what the pointer is over
-    ActionChains(browser).click().perform()
-    wait(lambda: browser.find_element(By.ID, "clock").text.startswith("4.0"))
+    x, y = x - size["width"] / 2, y - size["height"] / 2
+
+    def clicked():  # again while the page is too busy to take it
+        ActionChains(browser).move_to_element_with_offset(chart, x, y).pause(0.5).click().perform()
+        return browser.find_element(By.ID, "clock").text.startswith("4.0")
+
+    wait(clicked)
 
 
 def test_a_click_on_an_event_shows_its_own_time_and_labels_have_few_digits(open_page):
