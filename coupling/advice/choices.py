@@ -10,7 +10,6 @@ import numpy as np
 
 from coupling.case import Case, PlateCase, groups_of, running_case
 from coupling.drives import travel
-from coupling.extremes import extremes, sharp_points
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import silent
 from coupling.scene import PlateScene, lifts_of, plate_scene
@@ -67,16 +66,10 @@ def chosen_scene(case: Case, scene: PlateScene, choice: Choice) -> tuple[Case, P
     return chosen, replace(scene, lifts=lifts, surface=scene.surface.driven_by(lifts))
 
 
-def largest_stroke_of(scene: PlateScene, duration: float) -> float:
-    """The factor of strokes up to which slope and strain stay in bounds, at most 1 of a plate that stretches."""
-    if scene.stretch is not None:
-        (_, slope, strain), most = scene.stretch.extremes, 1.0
-    else:
-        off, most = scene.plate.section.thickness / 2, math.inf
-        sharp = sharp_points(scene.plate.singular_corners, scene.shapes.points)
-        slope, _, bend = extremes(scene.moving_shapes, scene.moving_drives, duration, sharp, off)
-        strain = off * (bend or 0.0)
-    return min([most, *(bound / value for bound, value in ((MAX_SLOPE, slope), (MAX_STRAIN, strain)) if value > 0)])
+def stroke_room(slope: float, strain: float | None, stretches: bool) -> float:
+    """The factor of strokes up to which a plate's slope and strain stay in bounds, at most 1 where it stretches."""
+    rooms = [bound / value for bound, value in ((MAX_SLOPE, slope), (MAX_STRAIN, strain or 0.0)) if value > 0]
+    return min([1.0 if stretches else math.inf, *rooms])
 
 
 def _needs_model(scene: PlateScene) -> bool:

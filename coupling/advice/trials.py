@@ -11,11 +11,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from coupling.advice.choices import Choice, choices_of, chosen_scene, largest_stroke_of
+from coupling.advice.choices import Choice, choices_of, chosen_scene, stroke_room
 from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
 from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
 from coupling.part import build_friction, build_part, friction_law, friction_of, local_size
-from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
+from coupling.plate_figures import largest
 from coupling.progress import doing, silent
 from coupling.report import MAX_QUASI_STATIC_ERROR
 from coupling.result import Result
@@ -85,10 +85,7 @@ def _largest_stroke(summary: Summary) -> float:
     """The factor of strokes up to which slope and strain of a plate stay in bounds; 1 where it stretches."""
     if not isinstance(summary, PlateSummary):
         return math.inf
-    if summary.theory != "linear":
-        return 1.0
-    rooms = [(MAX_SLOPE, summary.largest_slope), (MAX_STRAIN, summary.largest_strain or 0.0)]
-    return min((bound / value for bound, value in rooms if value > 0), default=math.inf)
+    return stroke_room(summary.largest_slope, summary.largest_strain, summary.theory != "linear")
 
 
 class Setting(NamedTuple):
@@ -117,7 +114,8 @@ class Trials:
         self.rings, self.stretches = strokes_alone(self.scene), stretches(self.scene)
         shortest = float(self.scene.surface.stroke_times.min(initial=self.case.run.duration))
         error = getattr(result.summary, "quasi_static_error", None) or 0.0
-        self.valid = MAX_QUASI_STATIC_ERROR / error if error else math.inf  # the factor of frequencies; if below 1 any
+        # The factor of the frequencies up to which the plate follows its drives at once.
+        self.valid = MAX_QUASI_STATIC_ERROR / error if error else math.inf
         # A drive that does not even repeat itself once carries nothing along.
         self.least_factor = LEAST if self.rings else min(1.0, TURNS * 2 * shortest / self.case.run.duration)
         # Tabulating a law takes a while.
@@ -161,8 +159,8 @@ class Trials:
             found = [(trial, one) for one in every if (trial := look(one, False))]
             found.sort(key=lambda pair: -pair[0].score)
             # Of the best it is looked whether their own strokes are in bounds, as that takes a while.
-            held = [trial if one._holds(trial) else look(one, True) for trial, one in found[: 2 * LISTED]]
-            best = [trial for trial in held if trial and trial.distance > ENOUGH * self.size]
+            within = [trial if one._holds(trial) else look(one, True) for trial, one in found[: 2 * LISTED]]
+            best = [trial for trial in within if trial and trial.distance > ENOUGH * self.size]
             if best:
                 return sorted(best, key=lambda trial: -trial.score)[:LISTED]
         last = self._last()
@@ -181,7 +179,8 @@ class Trials:
         if self._largest is not None:
             return self._largest
         assert isinstance(self.scene, PlateScene)
-        return largest_stroke_of(self.scene, self.case.run.duration)
+        _, slope, strain = largest(self.scene, self.case.run.duration)
+        return stroke_room(slope, strain, self.stretches)
 
     def _holds(self, trial: Trial) -> bool:
         """Whether the stroke of a trial is in bounds, or the case's own."""

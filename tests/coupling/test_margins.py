@@ -147,6 +147,12 @@ def test_a_summary_keeps_margins(base):
     assert summary_of(figures) == base.summary
 
 
+def test_of_actuators_that_count_the_same_to_rounding_the_first_is_named():
+    pair = [ActuatorCase(position=(x, 0.0), stroke=s, frequency=300) for x, s in ((-1e-4, 1e-6), (1e-4, 1e-6 + 1e-15))]
+    margins = run_case(case_of(place=(0.0, 8e-5), actuators=pair, run=RunCase(duration=1e-2))).summary.margins
+    assert margins.slip.actuator == margins.contact.actuator == 0
+
+
 @pytest.fixture(scope="module")
 def stuck():
     return run_case(case_of(stroke=5e-6, frequency=300))

@@ -19,6 +19,7 @@ NAMED: Final = 3  # ends, in words
 FINE: Final = 0.01  # of the spacing: the digits of places in words
 FAR: Final = 0.5  # of the way of runs, or of their number
 NONE: Final = math.nan
+SLIDING: Final = 0.05  # share of the starts: of more that still move when the first period ends it is said
 
 
 class Check(NamedTuple):
@@ -103,10 +104,9 @@ class DriftMap:
 
     @property
     def later(self) -> str:
-        """Which period it is, in words, where it is not the first: many parts still move when that ends."""
-        return f" ({percent(self.sliding)} still move when the first ends; this is no. {self.after + 1})" * (
-            self.after > 0
-        )
+        """Which period it is, in words, where many parts still move when the first ends."""
+        still = f"{percent(self.sliding)} still move when the first ends; this is no. {self.after + 1}"
+        return f" ({still})" if self.sliding > SLIDING else ""
 
     @property
     def text(self) -> str:

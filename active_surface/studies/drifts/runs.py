@@ -13,7 +13,7 @@ from scipy.interpolate import LinearNDInterpolator
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.drifts.basins import STILL, Fate, Field
-from active_surface.studies.drifts.maps import Check, DriftMap
+from active_surface.studies.drifts.maps import SLIDING, Check, DriftMap
 from active_surface.studies.drifts.result import Drift
 from active_surface.studies.feasibility import moving, on_plate, responses_of, resting_of, squares_within
 from active_surface.studies.feasibility.counting import HANGS, RESTS, find_states
@@ -39,15 +39,14 @@ from particle import Outcome, PartAtRest, State, Trajectory
 from particle.friction import LOCAL, Contact, ScaledFriction
 
 ACROSS: Final = 32  # places along the plate's longer side
-STAGES: Final = 3  # that are told of for each group
+STAGES: Final = 3  # of progress, for each group
 LOOSE: Final = 1e-6  # the tolerance of the paths, unless that of the case is larger
 PER_STROKE: Final = 10  # moments in the shortest stroke, at which a part at rest is looked at
 SURE: Final = 0.8  # of the friction limit: a part that is pulled less at these moments never slips
 CHECKED: Final = 8  # runs that a map is compared with
 MOST: Final = 40  # periods of each
 SEED: Final = 1
-SLIDING: Final = 0.05  # share of the starts: if more still slide when the first period ends,
-LATER: Final = 2  # so many more are followed
+LATER: Final = 2  # periods that are followed, too, where more than SLIDING still move when the first ends
 ROUNDING: Final = 1e-9  # of the time
 
 

@@ -134,8 +134,10 @@ def differences(first: Case, second: Case) -> Iterator[Difference]:
     one, other = dict(_leaves(plain_case(first))), dict(_leaves(plain_case(second)))
     found: dict[Location, list[Difference]] = {}
     for place in one | other:
-        (value, text, told), (value_2, text_2, told_2) = (side.get(place, (None, "-", False)) for side in (one, other))
-        if value != value_2 and (told or told_2):
+        (value, text, given), (value_2, text_2, given_2) = (
+            side.get(place, (None, "-", False)) for side in (one, other)
+        )
+        if value != value_2 and (given or given_2):
             general = (place[0], ALL, *place[2:]) if place[0] == "actuators" else place
             again = f" ({'other contents' if isinstance(value, bytes) else 'by rounding'})" if text == text_2 else ""
             found.setdefault(general, []).append(Difference(".".join(map(str, place)), text, text_2 + again))
@@ -146,7 +148,7 @@ def differences(first: Case, second: Case) -> Iterator[Difference]:
 
 
 def _leaves(
-    value: Any, annotation: Any = None, place: Location = (), told: bool = True
+    value: Any, annotation: Any = None, place: Location = (), given: bool = True
 ) -> Iterator[tuple[Location, Any]]:
     """Yield the place of each field that has a value; its value, its text, and whether it is not what it would be."""
     if isinstance(value, Table):
@@ -156,12 +158,12 @@ def _leaves(
         for name, item in value.items() if isinstance(value, dict) else enumerate(value):
             yield from _leaves(item, None, (*place, name))
     elif (place[0], place[-1]) in FILES and isinstance(value, str):
-        yield place, (Path(value).read_bytes(), Path(value).name, told)
+        yield place, (Path(value).read_bytes(), Path(value).name, given)
     elif value is not None and value != ():
         quantity = quantity_of(annotation, lists=False)
         angle = quantity and quantity.unit == "rad"
         text = written(value, annotation, "0 deg") if angle else written(_rounded(value), annotation)
-        yield place, (value, text.replace('"', ""), told)
+        yield place, (value, text.replace('"', ""), given)
 
 
 def _rounded(value: Any) -> Any:

@@ -12,6 +12,7 @@ from active_surface.cli.program import main
 from active_surface.studies.drifts import Fate, Field, basins_of, drift, running_groups, runs
 from active_surface.studies.drifts.maps import Check, place_text
 from active_surface.studies.drifts.runs import _ground
+from common import percent
 from coupling import SolvedPlates, build_friction, build_surface, read_case, silent
 from coupling.borders import KEPT
 from coupling.case import endless_case, groups_of, running_case
@@ -246,6 +247,7 @@ def test_ends_of_runs_from_in_between_are_near_those_of_the_map(single):
     first, _, run = single
     one = drift(read_case(ARRAY), across=30).maps[0]
     assert one.after > 0 and one.sliding > 0.4
+    assert one.later == f" ({percent(one.sliding)} still move when the first ends; this is no. {one.after + 1})"
     chance = np.random.default_rng(3)
     movers = one.starts[one.fates == Fate.MOVES]
     places = movers[chance.choice(len(movers), 40, replace=False)] + one.field.spacing * chance.uniform(
