@@ -129,9 +129,9 @@ def test_it_plays_where_the_clock_of_frames_lies_before_the_click(open_page):
 def test_a_click_on_the_curves_puts_the_clock_there(open_page):
     browser = open_page("run")
     chart, size = browser.find_element(By.ID, "curves"), browser.find_element(By.ID, "curves").size
-    x, y = browser.execute_script(
-        "const l = element('curves')._fullLayout; element('curves').scrollIntoView();"  # all of it: offsets are from the
-        "return [l.xaxis._offset + l.xaxis.l2p(4), l._size.t + 0.2 * l._size.h]"  # middle of the visible part
+    x, y = browser.execute_script(  # offsets of a click are from the middle of what is visible: make it all
+        "const l = element('curves')._fullLayout; element('curves').scrollIntoView();"
+        "return [l.xaxis._offset + l.xaxis.l2p(4), l._size.t + 0.2 * l._size.h]"
     )
     place = x - size["width"] / 2, y - size["height"] / 2
     ActionChains(browser).move_to_element_with_offset(chart, *place).pause(0.5).click().perform()
