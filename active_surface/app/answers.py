@@ -122,7 +122,7 @@ class Answers:
         if quick is None:
             self.send({"kind": "later", "turn": page_turn})
         elif not stop[0]:
-            drawn = path_of(quick.path, unit_of(case)) | {"face": face_of(case)}
+            drawn = path_of(quick.path, unit_of(case), quick.error) | {"face": face_of(case)}
             self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), "rest": rest, **drawn})
         else:  # another case has come in its place, but the page waits for an answer
             self.send({"kind": "passed", "turn": page_turn})

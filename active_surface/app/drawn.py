@@ -49,8 +49,8 @@ def face_of(case: Case) -> list[list[float]] | None:
     return None if face is None else (face.outline((0.0, 0.0), 0.0) * unit_of(case).per_si).tolist()
 
 
-def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
-    """A path, how it ended and how far the part came."""
+def path_of(path: Trajectory, unit: Unit, error: float | None = None) -> dict[str, Any]:
+    """A path, how it ended and how far the part came; error: of its end [m], where it is estimated."""
     line = _curve(path)
     line = thinned(line, SEEN * extent(line))
     return {
@@ -58,6 +58,7 @@ def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
         "outcome": path.outcome.value,
         "sentence": report.with_micro_signs(path.sentence),
         "distance": quantity_text(path.distance, "m", 4),
+        "error": None if error is None else quantity_text(error, "m", 2),
         "duration": quantity_text(float(path.time[-1]), "s", 3),
         "end": (path.position[-1] * unit.per_si).tolist(),
         "heading": None if path.heading is None else float(path.heading[-1]),

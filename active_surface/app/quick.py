@@ -1,4 +1,4 @@
-"""Quick paths: what is drawn while a field is dragged, exact where that takes milliseconds, else coarser."""
+"""Quick paths: what is drawn while a field is dragged, exact where that is fast, else coarser, or an estimate."""
 
 from __future__ import annotations
 
@@ -11,14 +11,16 @@ from typing import Final
 
 import numpy as np
 
+from active_surface.app.leaps import leaped
 from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part
 from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
 from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
 LIMIT: Final = 0.02  # s after which a path is broken off, and a coarser one is tried in its place
+LEAPING: Final = 0.06  # s, the same of a path with leaps
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
-LEVELS, SHORTER = 8, 4  # of coarseness: exact, with coarse steps, then each time so many times shorter
+LEVELS, LEAPS, SHORTER = 9, 2, 4  # of coarseness: exact, with coarse steps, leaps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
 MOMENT: Final = 1e-9  # s: its path has the cell at the start fitted, which may take longer than LIMIT
@@ -35,6 +37,7 @@ class Quick:
 
     path: Trajectory
     coarse: tuple[str, ...] = ()
+    error: float | None = None  # m, of the end of one that is estimated
 
 
 class QuickPaths:
@@ -63,13 +66,20 @@ class QuickPaths:
             if level > 0:
                 tolerance = max(exact, LOOSE)
                 coarse.append(f"steps to {tolerance:g}")
-            if level > 1:
-                duration /= SHORTER ** (level - 1)
+            if level > LEAPS:
+                duration /= SHORTER ** (level - LEAPS)
                 coarse.append(f"only its first {duration * 1e3:.3g} ms")
             run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
+            coarser = case.model_copy(update={"run": run})
             self._level[count] = level
-            with suppress(Stopped), _limited():
-                return Quick(follow_part(case.model_copy(update={"run": run}), surface, law), tuple(coarse))
+            if level == LEAPS:
+                with suppress(Stopped, ValueError), _limited(LEAPING):  # ValueError: of a leap over the rim
+                    if (found := leaped(coarser, surface, law)) is not None:
+                        coarse.append(f"an estimate by {found.followed} of {found.periods} periods")
+                        return Quick(found.path, tuple(coarse), found.error)
+                continue
+            with suppress(Stopped), _limited(LIMIT):
+                return Quick(follow_part(coarser, surface, law), tuple(coarse))
         return None
 
     def prepare(self, case: Case, progress: Progress) -> None:
@@ -104,10 +114,10 @@ class QuickPaths:
 
 
 @contextmanager
-def _limited() -> Iterator[None]:
-    """Breaks paths in its block off after LIMIT, with Stopped."""
+def _limited(limit: float) -> Iterator[None]:
+    """Breaks paths in its block off after a time [s], with Stopped."""
     stop = np.zeros(1, dtype=np.int64)
-    timer = threading.Timer(LIMIT, stop.__setitem__, (0, 1))
+    timer = threading.Timer(limit, stop.__setitem__, (0, 1))
     timer.daemon = True
     timer.start()
     try:

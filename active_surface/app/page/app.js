@@ -170,10 +170,10 @@ function highest(data) {
 
 function take(message) { TAKES[message.kind](message); }
 
-function tellPath({ sentence, distance, duration, coarse, rest }) {
+function tellPath({ sentence, distance, error, duration, coarse, rest }) {
   const linear = coarse.some((text) => text.startsWith("linear theory")); // may be far off
   element("quick").classList.toggle("coarse", coarse.length > 0);
-  element("quick").textContent = linear && rest ? "Computing …" : `${sentence} It is ${distance} from its start after ${duration}.`;
+  element("quick").textContent = linear && rest ? "Computing …" : `${sentence} It is ${distance}${error ? ` (estimate, ±${error})` : ""} from its start after ${duration}.`;
   const follows = rest ? "The exact path is being computed." : "The exact path follows when you let go.";
   element("coarse").textContent = coarse.length ? `Preview: ${coarse.join(", ")}. ${follows}` : "";
 }
