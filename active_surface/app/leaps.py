@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -16,12 +16,13 @@ from coupling.case import Case, common_period
 from particle import AnyDrive, State, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
-LEAPS: Final = 8  # at most
+LEAPS: Final = 8  # over a whole path, where none is halved
 BEFORE, BETWEEN, AFTER = 3, 2, 2  # periods that are followed at the start, after each leap and at the end
-SAVING: Final = 2  # of the periods that are followed after a leap, it leaves out so many times as many, at least
-MANY: Final = 12  # common periods of the drives in a run: with fewer they count as having none
+BENT: Final = 0.25  # of a leap: a longer correction is not small
+NOTHING: Final = 1e-9  # m, and one so short is
+MANY: Final = 12  # periods of the drives in a run: with fewer in common they count as having none in common
 SURE, UNSURE = 0.25, 2.0  # of all corrections: the error, with a common period of the drives and without
-LEAST: Final = 1e-9  # m, of the error
+LEAST: Final = 0.01  # of the distance: the error at least
 ROUNDING: Final = 1e-9  # of a time
 
 
@@ -46,12 +47,6 @@ class Course(NamedTuple):
         period = period if common else max(spans)
         return cls(begin, period, int((end - begin) / period * (1 + ROUNDING)), common)
 
-    @property
-    def stops(self) -> list[int]:
-        """After which periods leaps begin, BEFORE at first, and where the last one ends with AFTER to come."""
-        leaps = min(LEAPS, (self.periods - BEFORE - AFTER) // ((1 + SAVING) * BETWEEN))
-        return [int(k) for k in np.linspace(BEFORE, self.periods - AFTER, leaps + 1).round()] if leaps > 1 else []
-
 
 @dataclass(frozen=True, eq=False)
 class Leaped:
@@ -74,40 +69,49 @@ def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
 
     A leap over n periods carries the part by n d, where d is its displacement in the period before. The displacement
     d' in the m-th period after it then corrects this by (d' - d) n (n + 1) / 2 (n + m), as if displacements changed
-    linearly with time. The error is a share of the corrections' lengths.
+    linearly with time. A leap after which the part is lost is halved, and so is one whose correction is not small
+    where drives have a common period. The error is a share of the corrections' lengths, or of the distance.
     """
-    course = Course.of(build_drives(case), case.run.duration)
-    if not (stops := course.stops) or case.run.scheme != "events" or case.run.after_detachment == "fly":
+    course, run = Course.of(build_drives(case), case.run.duration), case.run
+    if course.periods < MANY or run.scheme != "events" or run.after_detachment == "fly":
         return None
 
     def moment(periods: int) -> float:
         return course.begin + periods * course.period
 
-    piece = _piece(case, surface, law, (0.0, moment(stops[0])), course.period)
-    rows, error, followed = [piece.rows], 0.0, BEFORE
-    for now, stop in pairwise(stops):
-        if (drift := piece.drift) is None:
-            break
-        passed, begin = stop - BETWEEN - now, moment(stop - BETWEEN)
-        from_here = _at(case, piece, passed * drift)
-        rows.append(_slide(piece.rows[-1], drift / course.period))
-        piece = _piece(from_here, surface, law, (begin, moment(stop)), course.period)
-        if piece.drift is not None:
-            change = (piece.drift - drift) * passed * (passed + 1) / (2 * (passed + BETWEEN))
-            piece.rows[:, 1:4] += change
-            error += float(np.hypot(*change[:2]))
-        rows += [_slide(piece.rows[0], drift / course.period), piece.rows]
-        followed += BETWEEN
+    now, last = BEFORE, course.periods - AFTER
+    passed = longest = (last - now) // LEAPS
+    piece: _Piece | None = _piece(case, surface, law, (0.0, moment(now)), course.period)
+    rows, error, followed = [piece.rows], 0.0, now
+    while now < last and piece.drift is not None:
+        passed = max(min(passed, last - now - BETWEEN), 0)
+        begin, end, drift = now + passed, min(now + passed + BETWEEN, last), piece.drift
+        found, change = None, np.zeros(3)
+        with suppress(ValueError):  # of a leap over the rim
+            found = _piece(_at(case, piece, passed * drift), surface, law, (moment(begin), moment(end)), course.period)
+            if found.drift is not None:
+                change = (found.drift - drift) * passed * (passed + 1) / (2 * (passed + end - begin))
+        length = float(np.hypot(*change[:2]))
+        bent = course.common and length > BENT * passed * float(np.hypot(*drift[:2])) + NOTHING
+        if passed and (found is None or found.drift is None or bent):
+            passed //= 2
+            continue
+        assert found is not None
+        found.rows[:, 1:4] += change
+        if passed:
+            rows += [_slide(piece.rows[-1], drift / course.period), _slide(found.rows[0], drift / course.period)]
+        rows.append(found.rows)
+        piece, now, passed = found, end, min(2 * passed + 1, longest)
+        error, followed = error + length, followed + end - begin
     if piece.drift is not None:
-        rest = moment(stops[-1]), case.run.duration
-        piece = _piece(_at(case, piece), surface, law, rest, course.period)
+        piece = _piece(_at(case, piece), surface, law, (moment(last), run.duration), course.period)
         rows.append(piece.rows)
         followed += AFTER
     whole = np.concatenate(rows)
     heading = None if piece.path.heading is None else whole[:, 3]
     path = replace(piece.path, time=whole[:, 0], position=whole[:, 1:3], velocity=whole[:, 4:], heading=heading)
     error *= SURE if course.common else UNSURE
-    return Leaped(path, followed, course.periods, max(error, LEAST))
+    return Leaped(path, followed, course.periods, max(error, LEAST * path.distance))
 
 
 def _piece(case: Case, surface: SurfaceMotion, law: Contact, times: tuple[float, float], period: float) -> _Piece:

@@ -18,7 +18,7 @@ from coupling.scene import lifts_of
 from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
 LIMIT: Final = 0.02  # s after which a path is broken off, and a coarser one is tried in its place
-LEAPING: Final = 0.06  # s, the same of a path with leaps
+LEAPING: Final = 0.15  # s, the same of a path with leaps
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
 LEVELS, LEAPS, SHORTER = 9, 2, 4  # of coarseness: exact, with coarse steps, leaps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
@@ -60,9 +60,16 @@ class QuickPaths:
         law, exact, count = build_friction(case), case.run.tolerance, len(case.actuators)
         moment = case.run.model_copy(update={"duration": MOMENT})
         follow_part(case.model_copy(update={"run": moment}), surface, law)
-        for level in range(0 if rest else self._level.get(count, 0), LEVELS):
+        known = 0 if rest else self._level.get(count, 0)
+        for level in sorted({*range(known, LEVELS), min(known, LEAPS)}):  # leaps are tried each time
+            coarse, self._level[count] = [how] if how else [], level
+            if level == LEAPS:
+                with suppress(Stopped, ValueError), _limited(LEAPING):  # ValueError: of a leap over the rim
+                    if (found := leaped(case, surface, law)) is not None:
+                        coarse.append(f"an estimate by {found.followed} of {found.periods} periods")
+                        return Quick(found.path, tuple(coarse), found.error)
+                continue
             tolerance, duration = exact, case.run.duration
-            coarse = [how] if how else []
             if level > 0:
                 tolerance = max(exact, LOOSE)
                 coarse.append(f"steps to {tolerance:g}")
@@ -70,16 +77,8 @@ class QuickPaths:
                 duration /= SHORTER ** (level - LEAPS)
                 coarse.append(f"only its first {duration * 1e3:.3g} ms")
             run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
-            coarser = case.model_copy(update={"run": run})
-            self._level[count] = level
-            if level == LEAPS:
-                with suppress(Stopped, ValueError), _limited(LEAPING):  # ValueError: of a leap over the rim
-                    if (found := leaped(coarser, surface, law)) is not None:
-                        coarse.append(f"an estimate by {found.followed} of {found.periods} periods")
-                        return Quick(found.path, tuple(coarse), found.error)
-                continue
             with suppress(Stopped), _limited(LIMIT):
-                return Quick(follow_part(coarser, surface, law), tuple(coarse))
+                return Quick(follow_part(case.model_copy(update={"run": run}), surface, law), tuple(coarse))
         return None
 
     def prepare(self, case: Case, progress: Progress) -> None:
