@@ -81,12 +81,13 @@ def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
 
     now, last = BEFORE, course.periods - AFTER
     passed = longest = (last - now) // LEAPS
-    piece: _Piece | None = _piece(case, surface, law, (0.0, moment(now)), course.period)
+    piece = _piece(case, surface, law, (0.0, moment(now)), course.period)
     rows, error, followed = [piece.rows], 0.0, now
     while now < last and piece.drift is not None:
         passed = max(min(passed, last - now - BETWEEN), 0)
         begin, end, drift = now + passed, min(now + passed + BETWEEN, last), piece.drift
-        found, change = None, np.zeros(3)
+        found: _Piece | None = None
+        change = np.zeros(3)
         with suppress(ValueError):  # of a leap over the rim
             found = _piece(_at(case, piece, passed * drift), surface, law, (moment(begin), moment(end)), course.period)
             if found.drift is not None:

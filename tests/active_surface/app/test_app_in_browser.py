@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from app_case import CASE as ONE
+from app_case import DEVICE
 from page_files import FACED
 
 from coupling import read_case, run_case
@@ -22,7 +22,6 @@ from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarning")]
 
-LONG = ONE.replace('"3 ms"', '"400 ms"').replace('"60 um"', '"20 um"').replace("40 nN", "20 nN")
 ACTIONS = 15
 ACT = """
 const [act, r, text] = arguments, all = [...knobs.values()], knob = all[Math.floor(r[0] * all.length)];
@@ -123,12 +122,16 @@ def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
     wait(lambda: browser.execute_script(places) == began)
 
 
-@pytest.mark.parametrize("opened", [LONG], indirect=True)
+@pytest.mark.parametrize("opened", [DEVICE], indirect=True)
 def test_what_is_drawn_while_a_slider_is_dragged_is_a_marked_estimate_of_the_whole_path(opened):
     browser, _ = opened
     said = lambda name: browser.find_element(By.ID, name).text  # noqa: E731
     ended = said("quick").split("after ")[1]
-    slide = "const { slider } = knobs.get('friction.limit'); slider.value = 600; slider.dispatchEvent(new Event(arguments[0]))"
+    slide = """
+const { slider } = knobs.get("actuators.0.stroke");
+slider.value = 600;
+slider.dispatchEvent(new Event(arguments[0]));
+"""
     browser.execute_script(slide, "input")
     wait(lambda: "an estimate by" in said("coarse"))
     assert said("quick").split("after ")[1] == ended and "(estimate, ±" in said("quick")
