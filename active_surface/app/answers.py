@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.app.aiming import Search
-from active_surface.app.drawn import face_of, path_of, unit_of
+from active_surface.app.drawn import drift_of, face_of, path_of, unit_of
 from active_surface.app.full import Full, Superseded, full_answer
 from active_surface.app.quick import QuickPaths
 from active_surface.steering import Aimed
+from active_surface.studies.drifts import drift
 from coupling import Progress, ProgressCallback, SolvedPlates, ground_key, report
 from coupling.case import Case, InputError
 from particle import Trajectory
@@ -29,6 +30,7 @@ from particle import Trajectory
 Answer = TypeVar("Answer")
 
 KEPT_PLATES: Final = 4
+ACROSS: Final = 12  # places that parts are followed from, along the plate's longer side
 FULL: Final = 4  # threads of runs: one may take seconds to hear that nobody waits for it
 TEXT: Final = re.compile(r'("(?:[^"\\]|\\.)*")')  # in quotes, as `quoted` writes it
 Send = Callable[[dict[str, Any]], object]
@@ -96,11 +98,12 @@ class Answers:
         self._lanes, self._stop = lanes, np.zeros(1, np.int64)  # 1 once the case is another one
         self._ground = ("", 0.0)  # what models of the plate of the case follow from
         self._search: Search | None = None
+        self._drift: object = None  # a token of that which is wanted
         self._tasks: set[asyncio.Task[None]] = set()
 
     def forget(self) -> None:
         """Answer no more of what was asked before."""
-        self.full = None
+        self.full = self._drift = None
         self._stop[0] = 1
         self._stop = np.zeros(1, np.int64)
 
@@ -162,7 +165,9 @@ class Answers:
         try:
             work = self._lanes.quick_paths.prepare
             if wanted():
-                await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread(), wanted))
+                await self._lanes.run(
+                    self._lanes.models, work, case, _noting(self._from_thread(), wanted, "Preparing quick paths")
+                )
         except Superseded:
             return
         except ValueError:  # of strokes beyond those of the case, which may ask too much
@@ -171,6 +176,33 @@ class Answers:
             self.tell_error(error)
         if wanted() and not self.searching:
             self.send({"kind": "idle"})
+
+    async def drift(self, case: Case, on: bool) -> None:
+        """Find where parts go from everywhere under the drives of a case; on: whether it is still wanted."""
+        self._drift = token = object() if on else None
+        if not on:
+            self.send({"kind": "idle"})
+            return
+
+        def wanted() -> bool:
+            return self._drift is token
+
+        def work() -> dict[str, Any]:
+            progress = _noting(found, wanted, "Where parts go")
+            return drift_of(drift(case, across=ACROSS, threads=1, progress=progress, plates=self._lanes.plates), unit)
+
+        unit, found = unit_of(case), self._from_thread()
+        try:
+            shown = await self._lanes.run(self._lanes.full, work)
+        except Superseded:
+            return
+        except ValueError as error:  # there is no such map
+            shown = {"text": as_typed(str(error).removeprefix("Input case of drift "))}
+        except Exception as error:
+            self.tell_error(error)
+            return
+        if wanted():
+            self.send({"kind": "drift", **shown})
 
     @property
     def searching(self) -> bool:
@@ -237,12 +269,12 @@ class Answers:
         return lambda message: loop.call_soon_threadsafe(self.send, message)
 
 
-def _noting(send: Send, wanted: Callable[[], bool]) -> Progress:
+def _noting(send: Send, wanted: Callable[[], bool], what: str) -> Progress:
     """A progress that tells the page its stages; Superseded once it is not wanted any more."""
 
     @contextmanager
     def progress(stage: str) -> Iterator[ProgressCallback]:
-        text = f"Preparing quick paths: {stage[0].lower()}{stage[1:]}"
+        text = f"{what}: {stage[0].lower()}{stage[1:]}"
 
         def tell(done: int, of: int) -> None:
             if not wanted():

@@ -156,6 +156,10 @@ class Session:
         data = await self._lanes.run(self._lanes.full, _picture, self._answers.full)
         self._answers.send({"kind": "picture", "name": f"{self._open.case.name}.png", "bytes": data})
 
+    async def _do_drift(self, message: Message) -> None:
+        """Find where parts go from everywhere, or no more."""
+        self._answers.spawn(self._answers.drift(self._open.case, message.get("on") is True))
+
     async def _do_aim(self, message: Message) -> None:
         """Search for drives to a target, in m."""
         target = message.get("target")

@@ -69,6 +69,7 @@ const TAKES = {
     caseData = data;
     for (const id of ["opened", "bar"]) element(id).hidden = false;
     if (first) element("menu").hidden = true;
+    if (first && drifting()) askDrift(false);
     if (first) { RUNS.saved = savedPath = nowPath = null; element("run").hidden = element("trust").hidden = true; element("undo").focus(); }
     element("name").textContent = data.name + (data.changed ? ", changed" : "");
     document.title = `${data.name}: active-surface`;
@@ -89,7 +90,7 @@ const TAKES = {
     if (answer.turn) clearMistakes(); // before its case comes, which keeps what is wrong
     arrived(answer, () => {
       nowPath = { ...pairs(unpack(answer.line)), heading: answer.heading, coarse: answer.coarse, exact: false };
-      for (const id of ["run", "trust"]) element(id).classList.add("old");
+      for (const id of ["run", "trust", "drift-layer", "drift-note"]) element(id).classList.add("old");
       mapData.face = answer.face; // whose sizes may be others
       drawPath();
       if (mapData.face) placeOver();
@@ -120,6 +121,13 @@ const TAKES = {
     await takeRun(answer.data, pageData ? time[shown] : highest(answer.data));
     drawMap();
     document.body.dataset.ready = "run";
+    if (drifting()) askDrift(true); // anew
+  },
+  drift({ text, warnings = [], ...shown }) {
+    element("busy").textContent = "";
+    element("drift-note").classList.remove("old");
+    element("drift-note").textContent = [text, ...warnings].join(" ");
+    drawDrift(shown);
   },
   busy({ stage, done, of }) { element("busy").textContent = of ? `${stage}: ${done} of ${of} …` : `${stage} …`; },
   idle() { element("busy").textContent = ""; },
@@ -191,6 +199,14 @@ function tellTrust({ trust, warnings }) {
   element("verdict").textContent = `Trust: ${warnings.length || "no"} warning${warnings.length === 1 ? "" : "s"}.`;
   element("trust-figures").textContent = `${trust[0].toUpperCase()}${trust.slice(1)}.`;
   element("warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+function drifting() { return element("drift").getAttribute("aria-pressed") === "true"; }
+
+function askDrift(on) {
+  element("drift").setAttribute("aria-pressed", on);
+  if (!on) TAKES.drift({ text: "" });
+  ask({ do: "drift", on });
 }
 
 // The summary beside that of the saved case; what differs stands out.
@@ -274,6 +290,7 @@ element("menu-button").addEventListener("click", () => {
   else element("menu").hidden = true;
 });
 element("picture").addEventListener("click", () => { element("picture").disabled = true; ask({ do: "picture" }); });
+element("drift").addEventListener("click", () => askDrift(!drifting()));
 element("aim").addEventListener("click", () => setAiming(!aiming));
 element("chosen").addEventListener("change", (event) => onPick(event.target.value));
 element("save").addEventListener("click", () => {
