@@ -76,7 +76,9 @@ def drift_of(found: Drift, unit: Unit) -> dict[str, Any]:
         "arrows": packed(np.column_stack([places[moves] - ways / 2, places[moves] + ways / 2]), "f4"),
         "still": packed(places[stays], "f4"),
         "lost": packed(places[~moves & ~stays], "f4"),
-        "text": report.with_micro_signs(f"Where parts go in a period, {period}{one.later}: {one.text}."),
+        "text": report.with_micro_signs(
+            f"Where parts go in a period, {period}{one.later}: {one.text}. Dots: it stays; +: it comes off or leaves."
+        ),
         "warnings": found.warnings(),
     }
 

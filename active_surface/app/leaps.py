@@ -23,6 +23,7 @@ NOTHING: Final = 1e-9  # m, and one so short is
 MANY: Final = 12  # periods of the drives in a run: with fewer in common they count as having none in common
 SURE, UNSURE = 0.25, 2.0  # of all corrections: the error, with a common period of the drives and without
 LEAST: Final = 0.01  # of the distance: the error at least
+LOOSE: Final = 1e-7  # the tolerance of pieces, at least: at 1e-6 a drift may be a tenth off
 ROUNDING: Final = 1e-9  # of a time
 
 
@@ -119,7 +120,7 @@ def _piece(case: Case, surface: SurfaceMotion, law: Contact, times: tuple[float,
     """The path from one time to another [s], of a part that is where the case has it."""
     begin, duration = times[0], times[1] - times[0]
     drives = surface.drives._replace(delay=surface.drives.delay - begin)
-    run = case.run.model_copy(update={"duration": duration})
+    run = case.run.model_copy(update={"duration": duration, "tolerance": max(case.run.tolerance, LOOSE)})
     path = follow_part(case.model_copy(update={"run": run}), replace(surface, drives=drives), law)
     heading = np.zeros(len(path.time)) if path.heading is None else path.heading
     rows = np.column_stack([path.time + begin, path.position, heading, path.velocity])

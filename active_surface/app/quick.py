@@ -18,7 +18,8 @@ from coupling.scene import lifts_of
 from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
 LIMIT: Final = 0.02  # s after which a path is broken off, and a coarser one is tried in its place
-LEAPING: Final = 0.15  # s, the same of a path with leaps
+LEAPING: Final = 0.25  # s, the same of a path with leaps
+SLOW: Final = 3  # of these in a row are broken off: no more are tried until nothing is dragged
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
 LEVELS, LEAPS, SHORTER = 9, 2, 4  # of coarseness: exact, with coarse steps, leaps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
@@ -47,6 +48,7 @@ class QuickPaths:
         self._plates = plates
         self._coarse = SolvedPlates(keep=4)
         self._level: dict[int, int] = {}  # of coarseness that was quick enough, by the number of actuators
+        self._slow = 0  # paths with leaps that were broken off one after the other
 
     def of(self, case: Case, rest: bool = True) -> Quick | None:
         """The path of a case; None where nothing quick is known, as for a thousand actuators on another plate.
@@ -61,11 +63,15 @@ class QuickPaths:
         moment = case.run.model_copy(update={"duration": MOMENT})
         follow_part(case.model_copy(update={"run": moment}), surface, law)
         known = 0 if rest else self._level.get(count, 0)
-        for level in sorted({*range(known, LEVELS), min(known, LEAPS)}):  # leaps are tried each time
+        self._slow *= not rest
+        leaping = {min(known, LEAPS)} if self._slow < SLOW else set()  # also where a path was broken off before
+        for level in sorted({*range(known, LEVELS), *leaping}):
             coarse, self._level[count] = [how] if how else [], level
             if level == LEAPS:
-                with suppress(Stopped, ValueError), _limited(LEAPING):  # ValueError: of a leap over the rim
-                    if (found := leaped(case, surface, law)) is not None:
+                self._slow += 1
+                with suppress(Stopped), _limited(LEAPING):
+                    found, self._slow = leaped(case, surface, law), 0
+                    if found is not None:
                         coarse.append(f"an estimate by {found.followed} of {found.periods} periods")
                         return Quick(found.path, tuple(coarse), found.error)
                 continue

@@ -57,7 +57,7 @@ function drawPath() {
   if (last >= 0) put(element("end"), [x[last], y[last]], nowPath.heading);
 }
 
-// Where parts go: arrows, dots where they stay and crosses where they are lost; nothing: none.
+// Where parts go: arrows, dots where they stay and + where they are lost; nothing: none.
 function drawDrift({ arrows = "", still = "", lost = "" } = {}) {
   const places = (packed) => { const { x, y } = pairs(unpack(packed)); return Array.from(x, (c, k) => [c, -y[k]]); };
   const size = mapWidth() / 150, dots = (list, mark) => list.map(([x, y]) => `M${x},${y}${mark}`).join("");
@@ -68,7 +68,7 @@ function drawDrift({ arrows = "", still = "", lost = "" } = {}) {
   }
   element("drift-arrows").setAttribute("d", lines.join(""));
   element("drift-still").setAttribute("d", dots(places(still), "h0"));
-  element("drift-lost").setAttribute("d", dots(places(lost), `m${-size},${-size}l${2 * size},${2 * size}m0,${-2 * size}l${-2 * size},${2 * size}`));
+  element("drift-lost").setAttribute("d", dots(places(lost), `m${-size},0h${2 * size}m${-size},${-size}v${2 * size}`));
   element("drift-layer").classList.remove("old");
 }
 

@@ -142,6 +142,21 @@ slider.dispatchEvent(new Event(arguments[0]));
     assert "estimate" not in said("quick") and line.value_of_css_property("stroke-dasharray") == "none"
 
 
+def test_where_parts_go_is_drawn_and_marked_as_old_once_something_changes(opened):
+    browser, _ = opened
+    note, arrows, button = (browser.find_element(By.ID, name) for name in ("drift-note", "drift-arrows", "drift"))
+    button.click()
+    wait(lambda: note.text.startswith("Where parts go in a period"))
+    first = arrows.get_attribute("d")
+    assert first.count("M") >= 2
+    browser.execute_script("change({ 'part.mass': '2.1 ug' }, false, performance.now())")
+    wait(lambda: note.get_attribute("class") == "caption old")
+    browser.execute_script("change({ 'part.mass': '1.7 ug' }, true, performance.now())")
+    wait(lambda: note.get_attribute("class") == "caption" and arrows.get_attribute("d") != first)
+    button.click()
+    assert not arrows.get_attribute("d") and not note.text
+
+
 MAPPED = """
 const [x, y] = mapAxes().map((axis) => axis.range), [{ z }] = element("map").data, heights = heightsAt(shown);
 const nodes = nodesIn(x, y, mapData.perSI / perMetre(units.length));
