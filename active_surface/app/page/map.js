@@ -58,8 +58,8 @@ function drawPath() {
 }
 
 // Where parts go: arrows, dots where they stay and + where they are lost; nothing: none.
-function drawDrift({ arrows = "", still = "", lost = "" } = {}) {
-  const places = (packed) => { const { x, y } = pairs(unpack(packed)); return Array.from(x, (c, k) => [c, -y[k]]); };
+function drawDrift({ arrows, still, lost }) {
+  const places = (packed) => { const { x, y } = packed ? pairs(unpack(packed)) : NOWHERE; return Array.from(x, (c, k) => [c, -y[k]]); };
   const size = mapWidth() / 150, dots = (list, mark) => list.map(([x, y]) => `M${x},${y}${mark}`).join("");
   const lines = [], ends = places(arrows);
   for (let k = 0; k < ends.length; k += 2) {

@@ -57,7 +57,7 @@ def path(tmp_path):
 
 
 def floats(packed):
-    return np.frombuffer(base64.b64decode(packed["data"]), "<f4")
+    return np.frombuffer(base64.b64decode(packed["bytes"]), "<f4")
 
 
 def case_of(page):
