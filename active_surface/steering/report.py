@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from active_surface.steering.following import Progress
-from active_surface.steering.knobs import Stop
+from active_surface.steering.knobs import KEYS, Stop
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
@@ -16,7 +16,6 @@ from coupling.case import ActuatorCase, amplitude
 
 MICRO, MILLI = 1e6, 1e3
 WIDER = 2.0  # times a bound: what a hint proposes
-KEYS = ("frequency", "stroke", "delay", "cycles")
 
 
 def figures(result: Aimed) -> dict[str, Any]:
@@ -33,7 +32,9 @@ def figures(result: Aimed) -> dict[str, Any]:
         "interrupted": result.interrupted,
         "paths": result.paths,
         "at_bounds": [
-            {"actuator": stop.knob.actuator, "key": stop.knob.key, "bound": stop.bound} for stop in result.stops
+            {"actuator": k, "key": stop.knob.key, "bound": stop.bound}
+            for stop in result.stops
+            for k in stop.knob.actuators
         ],
         "legs": [
             {
@@ -71,7 +72,7 @@ def hints(stops: Sequence[Stop]) -> list[str]:
         groups.setdefault((stop.knob.key, stop.highest), []).append(stop)
     texts = []
     for (key, highest), group in groups.items():
-        numbers = [str(k) for k in sorted({stop.knob.actuator for stop in group})]
+        numbers = [str(k) for k in sorted({k for stop in group for k in stop.knob.actuators})]
         low, high = min(stop.knob.low for stop in group), max(stop.knob.high for stop in group)
         if highest:
             high *= WIDER

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
@@ -75,8 +75,10 @@ class Settings(Table):
         default=None, examples=[[0, 4]]
     )
     """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
-    nearest: Count = 4
+    nearest: Count = 9
     """How many these are."""
+    groups: Literal["each", "columns", "rows", "all"] = "each"
+    """Which of them move alike: those of a column or row, all, or none."""
     frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None
     """Bounds; without them from 0.2 times to twice its own."""
     stroke: Annotated[tuple[Length, Length], _Bounds('["0 um", "60 um"]')] | None = None

@@ -1,0 +1,156 @@
+"""Probes: short runs in which some of the actuators move alike, to see what moves the part, which way and how fast.
+
+The actuators that move are those behind a line across the array, seen along the way to the target, aslant or aside.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from active_surface.steering.knobs import Knobs
+from active_surface.steering.paths import Paths, driven
+from active_surface.steering.robustness import Disturbance
+from active_surface.steering.task import Task, offset, offset_of
+from common import quantity
+from coupling import run_case
+from coupling.case import ActuatorCase
+from particle import Outcome, SurfaceMotion, Trajectory, interruptible
+
+TURNS: Final = (0, 45, -45, 90, -90)  # deg, of the views from the way to the target
+ONE_LINE: Final = 0.01  # of the array's size: groups seen at the same distance
+LEVELS: Final = 5  # of the frequency, from the highest down
+STEP: Final = math.sqrt(2)  # times lower than the one before
+CYCLES: Final = 20  # of the lowest of them: a probe's duration
+ASIDE: Final = 0.5  # what motion aside counts of that along the way
+LEAST: Final = 1e-3  # of the way: a part that goes less far in every probe is not moved
+BEST: Final = 3  # probes that are followed over the whole way
+SLACK: Final = 1.5  # times as long as the fastest probe would take
+KEPT: Final = (Outcome.STUCK, Outcome.MOVING)
+
+
+class Unmoved(ValueError):
+    """No drives within the bounds of a search move the part."""
+
+
+class Probe(NamedTuple):
+    """Which actuators move and how often a second, and the path."""
+
+    running: frozenset[int]
+    actuators: tuple[ActuatorCase, ...]
+    frequency: float  # Hz
+    path: Trajectory
+    moved: FloatArray  # (2,) m; with a heading to reach (3,)
+
+
+class Probes:
+    """The probes of a task. Raises Unmoved where none moves the part."""
+
+    def __init__(self, surface: SurfaceMotion, task: Task, threads: int | None) -> None:
+        self._surface, self._threads, self.count = surface, threads, 0
+        every = frozenset(task.movers)
+        highest = _frequency(task, _row(_knobs(task), every))
+        frequencies = [highest / STEP**k for k in range(LEVELS)]
+        self._task = task.within(CYCLES / frequencies[-1])
+        way = offset(task.target, task.turn, task.case.part.position, task.case.part.heading)
+        probes = self._of([(running, one) for running in self._sides() for one in frequencies], self._task)
+        if all(np.hypot.reduce(one.moved) < LEAST * task.away for one in probes):
+            raise Unmoved(self._why(probes))
+        ahead = -way / np.hypot.reduce(way)
+        speeds = [
+            float(one.moved @ ahead) - ASIDE * float(np.hypot.reduce(one.moved - one.moved @ ahead * ahead))
+            for one in probes
+        ]
+        fit = [k for k in np.argsort(speeds)[::-1].tolist() if speeds[k] > 0 and probes[k].path.outcome in KEPT]
+        self._best = [probes[k] for k in fit[:BEST]]
+        self.time = SLACK * task.away / speeds[fit[0]] * self._task.case.run.duration if fit else math.inf
+        """How long the whole way will take [s]."""
+
+    def start(self, task: Task) -> FloatArray | None:
+        """The setting of the knobs of a task, the same within another duration, whose path comes nearest its target."""
+        found = []
+        for one in self._of([(probe.running, probe.frequency) for probe in self._best], task):
+            period = 1 / one.frequency + 2 * one.actuators[task.movers[0]].dwell
+            cycles = np.arange(1, max(1, math.floor(one.path.time[-1] / period)) + 1)
+            at = one.path.at(np.minimum(cycles * period, one.path.time[-1]))
+            headings = np.zeros(len(cycles)) if at.heading is None else at.heading
+            away = [
+                float(np.hypot.reduce(offset(task.target, task.turn, *there)))
+                for there in zip(at.position, headings, strict=True)
+            ]
+            nearest = int(np.argmin(away))
+            found.append((away[nearest], _row(_knobs(task), one.running, one.frequency, float(cycles[nearest]))))
+        return min(found, key=lambda pair: pair[0])[1] if found else None
+
+    def _sides(self) -> list[frozenset[int]]:
+        """The actuators behind each line."""
+        task, groups = self._task, _knobs(self._task).groups
+        places = np.array([np.mean([task.case.actuators[k].position for k in group], axis=0) for group in groups])
+        away = np.subtract(task.target, task.case.part.position)
+        sides = {}
+        for turn in TURNS:
+            angle = math.atan2(away[1], away[0]) + math.radians(turn)
+            along = places @ (math.cos(angle), math.sin(angle))
+            for line in np.unique(np.round(along / (ONE_LINE * max(float(np.ptp(places)), 1e-9)))):
+                behind = np.flatnonzero(along <= (line + 1) * ONE_LINE * max(float(np.ptp(places)), 1e-9))
+                sides[frozenset(k for one in behind.tolist() for k in groups[one])] = None
+        return list(sides)
+
+    def _of(self, settings: list[tuple[frozenset[int], float]], task: Task) -> list[Probe]:
+        """The probes of settings, within the duration of a task."""
+        knobs, paths = _knobs(task), Paths(task.case, self._surface, self._threads)
+        sets = [knobs.actuators(_row(knobs, *setting)) for setting in settings]
+        followed = paths.of([(actuators, Disturbance()) for actuators in sets])
+        self.count += paths.count
+        start = offset(task.target, task.turn, task.case.part.position, task.case.part.heading)
+        return [
+            Probe(
+                running,
+                actuators,
+                actuators[task.movers[0]].frequency or 0.0,
+                path,
+                offset_of(path, task.target, task.turn) - start,
+            )
+            for (running, _), actuators, path in zip(settings, sets, followed, strict=True)
+        ]
+
+    def _why(self, probes: list[Probe]) -> str:
+        """Why the part does not move."""
+        case, kept = self._task.case, [one for one in probes if one.path.outcome in KEPT]
+        lost = len(probes) - len(kept)
+        text = f"nothing within the search's bounds moves the part: in none of {len(probes)} trial runs"
+        text += f" does it go {LEAST * 100:g} % of the way of {quantity(self._task.away, 'm')}"
+        if kept:
+            most = max(kept, key=lambda one: (one.path.distance, one.frequency, len(one.running)))
+            slip = interruptible(run_case, driven(case, most.actuators)).summary.margins.slip
+            pull = (
+                "it slips to and fro"
+                if slip is None or slip.value >= 1
+                else f"the pull reaches {slip.value:.3g} of the friction limit"
+            )
+            text += f"; at the most, {pull}"
+        text += f"; in {lost} of them it comes off" if lost else ""
+        return f"{text}. `active-surface advise {case.name}.toml` looks for what would move it"
+
+
+def _knobs(task: Task) -> Knobs:
+    return Knobs(task.case, task.settings, task.movers, together=True)
+
+
+def _frequency(task: Task, row: FloatArray) -> float:
+    return max(_knobs(task).actuators(row)[k].frequency or 0.0 for k in task.movers)
+
+
+def _row(knobs: Knobs, running: frozenset[int], frequency: float = math.inf, cycles: float = math.inf) -> FloatArray:
+    """The setting of knobs in which some actuators move at a frequency [Hz], and the others rest or move least."""
+    values = []
+    for knob in knobs.knobs:
+        largest = knob.high if knob.high > 0 else knob.low
+        stroke = largest if running.intersection(knob.actuators) else 0.0
+        wanted = {"frequency": frequency, "stroke": stroke, "delay": 0.0, "cycles": cycles}[knob.key]
+        values.append(min(max(wanted, knob.low), knob.high))
+    return np.array(values)
