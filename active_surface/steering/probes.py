@@ -6,7 +6,6 @@ The actuators that move are those behind a line across the array, seen along the
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -23,6 +22,7 @@ from particle import Outcome, SurfaceMotion, Trajectory, interruptible
 
 TURNS: Final = (0, 45, -45, 90, -90)  # deg, of the views from the way to the target
 ONE_LINE: Final = 0.01  # of the array's size: groups seen at the same distance
+LINES: Final = 4  # in each, at most
 LEVELS: Final = 5  # of the frequency, from the highest down
 STEP: Final = math.sqrt(2)  # times lower than the one before
 CYCLES: Final = 20  # of the lowest of them: a probe's duration
@@ -30,6 +30,7 @@ ASIDE: Final = 0.5  # what motion aside counts of that along the way
 LEAST: Final = 1e-3  # of the way: a part that goes less far in every probe is not moved
 BEST: Final = 3  # probes that are followed over the whole way
 SLACK: Final = 1.5  # times as long as the fastest probe would take
+MAX_PROBES: Final = len(TURNS) * LINES * LEVELS + BEST
 KEPT: Final = (Outcome.STUCK, Outcome.MOVING)
 
 
@@ -66,14 +67,14 @@ class Probes:
             for one in probes
         ]
         fit = [k for k in np.argsort(speeds)[::-1].tolist() if speeds[k] > 0 and probes[k].path.outcome in KEPT]
-        self._best = [probes[k] for k in fit[:BEST]]
+        self.best = [probes[k] for k in fit[:BEST]]
         self.time = SLACK * task.away / speeds[fit[0]] * self._task.case.run.duration if fit else math.inf
         """How long the whole way will take [s]."""
 
     def start(self, task: Task) -> FloatArray | None:
         """The setting of the knobs of a task, the same within another duration, whose path comes nearest its target."""
         found = []
-        for one in self._of([(probe.running, probe.frequency) for probe in self._best], task):
+        for one in self._of([(probe.running, probe.frequency) for probe in self.best], task):
             period = 1 / one.frequency + 2 * one.actuators[task.movers[0]].dwell
             cycles = np.arange(1, max(1, math.floor(one.path.time[-1] / period)) + 1)
             at = one.path.at(np.minimum(cycles * period, one.path.time[-1]))
@@ -90,14 +91,15 @@ class Probes:
         """The actuators behind each line."""
         task, groups = self._task, _knobs(self._task).groups
         places = np.array([np.mean([task.case.actuators[k].position for k in group], axis=0) for group in groups])
+        unit = ONE_LINE * float(np.ptp(places, axis=0).max()) or 1.0
+        sides: dict[frozenset[int], None] = {}
         away = np.subtract(task.target, task.case.part.position)
-        sides = {}
         for turn in TURNS:
             angle = math.atan2(away[1], away[0]) + math.radians(turn)
-            along = places @ (math.cos(angle), math.sin(angle))
-            for line in np.unique(np.round(along / (ONE_LINE * max(float(np.ptp(places)), 1e-9)))):
-                behind = np.flatnonzero(along <= (line + 1) * ONE_LINE * max(float(np.ptp(places)), 1e-9))
-                sides[frozenset(k for one in behind.tolist() for k in groups[one])] = None
+            along = np.round(places @ (math.cos(angle), math.sin(angle)) / unit)
+            lines = np.unique(along)
+            for line in lines[np.unique(np.linspace(0, len(lines) - 1, LINES).astype(int))]:
+                sides[frozenset(k for one in np.flatnonzero(along <= line).tolist() for k in groups[one])] = None
         return list(sides)
 
     def _of(self, settings: list[tuple[frozenset[int], float]], task: Task) -> list[Probe]:

@@ -89,15 +89,26 @@ class Trials:
 class Search:
     """Finds the drives that bring a part to a task's target within its case's duration; equal seeds, equal results.
 
-    Populations evolve around the case's own drives, where the knobs do, or anywhere. A robust search evolves
+    Newton's method is tried from a first setting, then populations evolve around it; without one anywhere. A robust
+    search evolves
     undisturbed paths first, for half of the paths at most, then continues around the most robust of their best drives.
     """
 
     def __init__(
-        self, paths: Paths, task: Task, knobs: Knobs, tell: ProgressCallback, max_paths: int, number: int
+        self,
+        paths: Paths,
+        task: Task,
+        knobs: Knobs,
+        tell: ProgressCallback,
+        max_paths: int,
+        number: int,
+        start: FloatArray | None = None,
     ) -> None:
-        """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers."""
-        self.knobs, self._paths, self._number, self._populations = knobs, paths, number, 0
+        """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers.
+
+        start: (n,) of the knobs.
+        """
+        self._start, self.knobs, self._paths, self._number, self._populations = start, knobs, paths, number, 0
         self._newton_range, self._seed = NEWTON_RANGE * paths.surface.size, task.settings.seed
         self._robust: Trials | None = None
         if task.settings.is_robust:
@@ -117,12 +128,14 @@ class Search:
 
     def run(self) -> None:
         """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
-        nominal, robust, start = self._nominal, self._robust, self.knobs.own if self.knobs.around else None
+        nominal, robust, start = self._nominal, self._robust, self._start
         if not self.knobs.knobs or start is not None:
             (robust or nominal).of((np.zeros(0) if start is None else start)[None])
         if not self.knobs.knobs:
             return
         if robust is None:
+            if start is not None and not nominal.reached and nominal.recent.cost <= self._newton_range:
+                _newton(self.knobs, nominal)
             while not (nominal.reached or nominal.exhausted):
                 self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
             return
