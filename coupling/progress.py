@@ -1,6 +1,6 @@
 """Progress: stages, or many pieces of one stage, on a terminal once the work has taken two seconds.
 
-Where there is no terminal, as in a log, a line twice a minute says what is done and what is left.
+Where there is no terminal, as in a log, a line after ten seconds and then twice a minute says what is done and left.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ _now = time.monotonic  # s
 
 PATIENCE = 2.0  # s of silence on a terminal
 PERIOD = 30.0  # s between lines elsewhere
+FIRST = 10.0  # s before the first of them, at most
 COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
 
 
@@ -128,7 +129,9 @@ class Bar:
 
     def _write_lines(self) -> None:
         with suppress(OSError, ValueError):  # of a stream that nobody reads any more
-            while not self._ended.wait(PERIOD) and sys.stderr:
+            wait = min(FIRST, PERIOD)
+            while not self._ended.wait(wait) and sys.stderr:
+                wait = PERIOD
                 print(f"{_clock(_now() - self._since)}  {self._line()}", file=sys.stderr, flush=True)
 
     def _announce(self) -> None:

@@ -15,11 +15,12 @@ from typing import Final, NamedTuple
 
 from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import Knobs, Stop, at_rest, is_schedulable, own_drives, shortest
-from active_surface.steering.paths import Paths, cost, driven, path_of, settled
+from active_surface.steering.paths import Paths, affordable, cost, driven, path_of, settled
 from active_surface.steering.probes import MAX_PROBES, Probes
 from active_surface.steering.search import Search
 from active_surface.steering.task import Task
-from coupling import ProgressCallback, answers_drives, build_drive
+from common import quantity
+from coupling import ProgressCallback, answers_drives, build_drive, doing
 from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
 from particle import SurfaceMotion, Trajectory, unbroken
 
@@ -28,8 +29,8 @@ STEP: Final = 1e-6  # s, of which times of legs are multiples
 SHORTEST: Final = 1e-9  # s: shorter waits are left out
 DIGITS: Final = 12  # decimals of times in s, as many as a file shows
 MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
-MAX_CYCLES: Final = 100_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
-LEAST_PATHS: Final = 500
+MAX_CYCLES: Final = 200_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
+LEAST_PATHS: Final = 400
 LEGS: Final = 4  # with one frequency
 LONGEST: Final = 20.0  # times the case's duration, that legs last where it is too short
 MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
@@ -119,7 +120,7 @@ class Approach:
             return None
         probes, case, left = Probes(self._surface, task, self._threads), self._task.case, task.case.run.duration
         self.paths += probes.count
-        self._count(0, 0)
+        self._count(0)
         if task.settings.is_robust or not probes.best:
             return None
         ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.movers) or answers_drives(case)
@@ -180,7 +181,13 @@ class Approach:
         knobs = Knobs(task.case, task.settings, task.movers, around, wide, start is not None)
         paths = Paths(task.case, self._surface, self._threads)
         first = knobs.own if around else start
-        search = Search(paths, task, knobs, self._count, min(at_most, left), self._searches, first)
+
+        def count(done: int, _: int) -> None:
+            self._count(done)
+            nearest = min(search.best.cost, self.best.cost if self.best else math.inf)
+            doing(f"paths at most; {quantity(nearest, 'm')} from the target so far")
+
+        search = Search(paths, task, knobs, count, min(at_most, left), self._searches, first)
         self._searches += 1
         self._under_way = partial(self._way, search, task.movers, chain)
         try:
@@ -230,12 +237,12 @@ class Approach:
     @property
     def _max_paths(self) -> int:
         """How many paths are followed at most."""
-        settings, fastest = self._task.settings, max(one.frequency or 0.0 for one in self._task.case.actuators)
-        if settings.paths is not None or settings.is_robust or not fastest:
+        settings = self._task.settings
+        if settings.paths is not None or settings.is_robust:
             return settings.max_paths
-        return min(settings.max_paths, max(LEAST_PATHS, round(MAX_CYCLES / (self._horizon * fastest))))
+        return affordable(self._task.case, self._horizon, MAX_CYCLES, LEAST_PATHS, settings.max_paths)
 
-    def _count(self, done: int, _: int) -> None:
+    def _count(self, done: int) -> None:
         self._tell(min(self.paths + done, self._max_paths), self._max_paths)
 
 

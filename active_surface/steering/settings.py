@@ -90,7 +90,7 @@ class Settings(Table):
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
     """From which random numbers follow."""
     paths: Count | None = Field(default=None, examples=[10000])
-    """How many are followed at most; without it 10 000, with a quantile or CVaR 40 000."""
+    """How many are followed at most; without it 10 000, fewer where runs are long, with a quantile or CVaR 40 000."""
     tolerance: Length = Field(default=5e-7, gt=0)
     """The distance from the target at which a search ends."""
     quantile: StrictFloat | None = Field(default=None, gt=0, le=1, examples=[0.9])
@@ -101,8 +101,8 @@ class Settings(Table):
         default=None, examples=[{"friction": "1 %", "part.position": "1 um", "actuators.*.stroke": "1 %"}]
     )
     """How far disturbed runs deviate at most, by field; without it friction and strokes by 1 %, the start by 1 um."""
-    scatter: Count = 100
-    """How many disturbed runs measure how robust the drives are."""
+    scatter: Count | None = Field(default=None, examples=[100])
+    """How many disturbed runs measure how robust the drives are; without it 100, or fewer where runs are long."""
 
     @property
     def is_robust(self) -> bool:
@@ -124,6 +124,10 @@ class AimTable(Settings):
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
     """Where the part is to go, unless the command states it."""
+    by: Annotated[tuple[Point, ...], Field(min_length=1)] | None = Field(
+        default=None, examples=[[["80 um", "0 um"], ["0 um", "80 um"]]]
+    )
+    """In place of a target the step from the start; for a plan steps, each from the way-point before."""
     heading: Angle | None = Field(default=None, examples=["30 deg"])
     """The heading that a part with a footprint is to have there; without it any will do."""
 
