@@ -106,7 +106,7 @@ class Bar:
         if first is None:
             self._bar.reset(self._id, completed=done, total=of)
         rate = f", {self.task.speed:.0f}/s" if self.task.speed else ""
-        self._bar.update(self._id, completed=done)
+        self._bar.update(self._id, completed=done, total=of)
         self.show(f"{self._stage}; writing all" if done == of else self._stage + rate)
 
     def _line(self) -> str:

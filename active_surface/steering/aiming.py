@@ -23,7 +23,7 @@ from active_surface.steering.probes import Unmoved
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
 from active_surface.steering.task import Route, Task, end_of
-from coupling import ProgressCallback, check_free, no_progress, run_case, warnings
+from coupling import ProgressCallback, check_free, doing, no_progress, run_case, warnings
 from coupling.case import write_case
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
 
@@ -140,7 +140,7 @@ def aim_over(
         return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
     approach = Approach(surface, task, threads, count)
-    return _found(approach.run, result, file, surface, threads)
+    return _found(approach.run, result, file, surface, threads, tell)
 
 
 def plan_over(
@@ -152,7 +152,7 @@ def plan_over(
 ) -> Planned:
     """The same as `plan` over an existing surface; writes a case file at most, before it looks at the scatter."""
     work = _Plan(surface, route, threads, tell)
-    return _found(work.run, lambda: work.planned, file, surface, threads)
+    return _found(work.run, lambda: work.planned, file, surface, threads, tell)
 
 
 class _Plan:
@@ -241,6 +241,7 @@ def _found(
     file: Path | None,
     surface: SurfaceMotion,
     threads: int | None,
+    tell: ProgressCallback,
 ) -> Kind:
     """The result of a search, with its case file, if any, and its scatter; after Ctrl-C the best so far, without.
 
@@ -258,7 +259,11 @@ def _found(
             result = replace(result, interrupted=interrupted)
             if file is not None:
                 result = replace(result, files=(write_case(result.case, file, result.head),))
-        return result if interrupted else replace(result, scatter=_scatter(result, surface, threads))
+        if interrupted:
+            return result
+        tell(result.paths, result.paths)
+        doing("paths; runs with disturbances")
+        return replace(result, scatter=_scatter(result, surface, threads))
     except KeyboardInterrupt:  # the result so far stays
         if result is None:
             raise

@@ -118,9 +118,9 @@ class Approach:
         """Search around the best probe of a leg, in a longer time where the leg takes that."""
         if self._max_paths - self.paths < MAX_PROBES:
             return None
+        doing("trying which actuators move the part")
         probes, case, left = Probes(self._surface, task, self._threads), self._task.case, task.case.run.duration
         self.paths += probes.count
-        self._count(0)
         if task.settings.is_robust or not probes.best:
             return None
         ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.movers) or answers_drives(case)

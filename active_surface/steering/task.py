@@ -125,7 +125,9 @@ class Route:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or self.case.name)
-        wrong = [] if self.through else ["through must be one way-point or more; got none"]
+        wrong = (
+            [] if self.through else ["through must be one way-point or more, as --through 20,0 or --by 20,0; got none"]
+        )
         if len(self.through) > 1 and self.case.part.face is not None:
             wrong.append("through must be one way-point for a part with a footprint, whose heading no leg carries on")
         for number, place in enumerate(self.through):
