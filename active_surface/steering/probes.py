@@ -23,8 +23,8 @@ from particle import Outcome, SurfaceMotion, Trajectory, interruptible
 TURNS: Final = (0, 45, -45, 90, -90)  # deg, of the views from the way to the target
 ONE_LINE: Final = 0.01  # of the array's size: groups seen at the same distance
 LINES: Final = 4  # in each, at most
-LEVELS: Final = 5  # of the frequency, from the highest down
-STEP: Final = math.sqrt(2)  # times lower than the one before
+LEVELS: Final = 5  # of the frequency, the highest within the bounds and
+RANGE: Final = 4.0  # times lower ones, by equal factors
 CYCLES: Final = 20  # of the lowest of them: a probe's duration
 ASIDE: Final = 0.5  # what motion aside counts of that along the way
 LEAST: Final = 1e-3  # of the way: a part that goes less far in every probe is not moved
@@ -53,10 +53,9 @@ class Probes:
 
     def __init__(self, surface: SurfaceMotion, task: Task, threads: int | None) -> None:
         self._surface, self._threads, self.count = surface, threads, 0
-        every = frozenset(task.movers)
-        highest = _frequency(task, _row(_knobs(task), every))
-        frequencies = [highest / STEP**k for k in range(LEVELS)]
-        self._task = task.within(CYCLES / frequencies[-1])
+        lowest, highest = (_frequency(task, end) for end in (0.0, math.inf))
+        frequencies = np.unique(np.geomspace(max(lowest, highest / RANGE), highest, LEVELS)).tolist()
+        self._task = task.within(CYCLES / frequencies[0])
         way = offset(task.target, task.turn, task.case.part.position, task.case.part.heading)
         probes = self._of([(running, one) for running in self._sides() for one in frequencies], self._task)
         if all(np.hypot.reduce(one.moved) < LEAST * task.away for one in probes):
@@ -123,28 +122,26 @@ class Probes:
     def _why(self, probes: list[Probe]) -> str:
         """Why the part does not move."""
         case, kept = self._task.case, [one for one in probes if one.path.outcome in KEPT]
-        lost = len(probes) - len(kept)
-        text = f"nothing within the search's bounds moves the part: in none of {len(probes)} trial runs"
-        text += f" does it go {LEAST * 100:g} % of the way of {quantity(self._task.away, 'm')}"
-        if kept:
-            most = max(kept, key=lambda one: (one.path.distance, one.frequency, len(one.running)))
-            slip = interruptible(run_case, driven(case, most.actuators)).summary.margins.slip
-            pull = (
-                "it slips to and fro"
-                if slip is None or slip.value >= 1
-                else f"the pull reaches {slip.value:.3g} of the friction limit"
-            )
-            text += f"; at the most, {pull}"
-        text += f"; in {lost} of them it comes off" if lost else ""
-        return f"{text}. `active-surface advise {case.name}.toml` looks for what would move it"
+        runs, lost = f"{len(probes)} trial runs within the search's bounds", len(probes) - len(kept)
+        advice = f". `active-surface advise {case.name}.toml` looks for drives that move it and keep it"
+        if not kept:
+            return f"the part comes off in each of {runs}{advice}"
+        most = max(kept, key=lambda one: (one.path.distance, one.frequency, len(one.running)))
+        slip = interruptible(run_case, driven(case, most.actuators)).summary.margins.slip
+        pull = "it slips to and fro" if slip is None else f"the pull reaches {slip.value:.3g} of the friction limit"
+        far = f"it goes {quantity(most.path.distance, 'm')} of {quantity(self._task.away, 'm')} at the most"
+        off = f"; in {lost} of them it comes off" if lost else ""
+        return f"nothing moves the part far: in {runs} {far}; {pull}{off}{advice}"
 
 
 def _knobs(task: Task) -> Knobs:
     return Knobs(task.case, task.settings, task.movers, together=True)
 
 
-def _frequency(task: Task, row: FloatArray) -> float:
-    return max(_knobs(task).actuators(row)[k].frequency or 0.0 for k in task.movers)
+def _frequency(task: Task, wanted: float) -> float:
+    """The frequency [Hz] within the bounds that is nearest to the one wanted."""
+    knobs = _knobs(task)
+    return knobs.actuators(_row(knobs, frozenset(), wanted))[task.movers[0]].frequency or 0.0
 
 
 def _row(knobs: Knobs, running: frozenset[int], frequency: float = math.inf, cycles: float = math.inf) -> FloatArray:

@@ -92,9 +92,8 @@ def hints(stops: Sequence[Stop], result: SteeringResult) -> list[str]:
     if not settled(result.trajectory):
         texts.append("the part is not at rest for good when the run ends: a longer duration leaves it time to stop")
     elif not texts:
-        texts.append(
-            f"no drives tried come nearer: let it try more, paths = {2 * result.paths} in [aim], or go there in steps"
-        )
+        more = f"paths = {2 * result.paths} in [aim] tries more"
+        texts.append(f"none of the drives tried brings the part nearer; {more}, and `plan` goes there in steps")
     return texts
 
 

@@ -54,7 +54,7 @@ def test_bounds_that_leave_out_the_own_drives_are_kept(case, surface, own):
 def test_a_hint_names_what_stood_at_its_bound(case, surface, own):
     aimed = aim_over(surface, Task(case, own[1], Settings(scatter=1)))
     assert hints([], aimed) == [
-        "none of the drives tried brings the part nearer; paths = 2 in [aim] tries more, and so does a way in steps (`plan`)"
+        "none of the drives tried brings the part nearer; paths = 2 in [aim] tries more, and `plan` goes there in steps"
     ]
 
     def stop(actuator, key, low, high, highest=True):
