@@ -13,7 +13,7 @@ from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
 from common import joined
-from coupling.case import ActuatorCase, amplitude
+from coupling.case import ActuatorCase, amplitude, quoted
 
 MICRO, MILLI = 1e6, 1e3
 WIDER = 2.0  # times a bound: what a hint proposes
@@ -82,13 +82,13 @@ def hints(stops: Sequence[Stop], result: SteeringResult) -> list[str]:
             high *= WIDER
         else:
             low *= WIDER if low < 0 else 1 / WIDER
-        bounds = ", ".join(
-            _value(key, bound) if key == "cycles" else f'"{_value(key, bound)}"' for bound in (low, high)
-        )
+        ends = _value(key, low), _value(key, high)
+        wider = f"{key} = [{', '.join(ends if key == 'cycles' else map(quoted, ends))}] in [aim]"
+        wider = f'--frequency "{":".join(ends)}"' if key == "frequency" else wider
         which = f"{'largest' if highest else 'smallest'} {'number of cycles' if key == 'cycles' else key}"
         values = joined(sorted({_value(key, stop.bound) for stop in group}))
         who, own = ("actuators", "their") if len(numbers) > 1 else ("actuator", "its")
-        texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {key} = [{bounds}] in [aim] widens it")
+        texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {wider} allows more")
     if not settled(result.trajectory):
         texts.append("the part is not at rest for good when the run ends: a longer duration leaves it time to stop")
     elif not texts:

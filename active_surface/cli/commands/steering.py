@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -13,7 +14,8 @@ from active_surface.cli.options import POSITIVE, RESULTS, Output, Overwrite, Thr
 from active_surface.cli.refusal import check_kind
 
 if TYPE_CHECKING:
-    from active_surface.steering import Aimed
+    from active_surface.steering import Aimed, Planned
+    from coupling import ProgressCallback
 
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
 SHARE = click.FloatRange(min=0, max=1, min_open=True, max_open=True)
@@ -51,8 +53,8 @@ def aim(
     CASE is a case file, or a file with a table [aim] that names one and says what may be varied. Ctrl-C ends the search
     with the best drives so far. The exit code is 1 where the target is missed.
     """
-    from active_surface.steering import Unmoved, read_heading, read_place, read_task
     from active_surface.steering import aim as find
+    from active_surface.steering import read_heading, read_place, read_task
 
     place = None if target is None else read_place(target, "--target")
     step = None if by is None else read_place(by, "--by")
@@ -61,11 +63,7 @@ def aim(
         raise ValueError("--cvar must not be given with --robust, whose place it takes")
     check_kind(case, "aim", "case")
     task = read_task(case, place, robust, cvar, angle, step, groups=groups, frequency=_bounds(frequency))
-    try:
-        with counted("paths") as tell:
-            return _aimed(find(task, output, threads, tell, overwrite))
-    except Unmoved as error:
-        return _unmoved(error)
+    return _searched(lambda tell: _aimed(find(task, output, threads, tell, overwrite)))
 
 
 @command
@@ -90,7 +88,6 @@ def plan(
     """
     from active_surface.steering import (
         ATTEMPTS,
-        Unmoved,
         next_leg,
         progress_of,
         read_measured,
@@ -108,22 +105,23 @@ def plan(
         ends = read_measured(measured)
         task = next_leg(route, ends, attempts or ATTEMPTS)
         if task is not None:
-            try:
-                with counted("paths") as tell:
-                    return _aimed(find(task, output, threads, tell, overwrite))
-            except Unmoved as error:
-                return _unmoved(error)
+            return _searched(lambda tell: _aimed(find(task, output, threads, tell, overwrite)))
         complete, figures, lines = report.ended(route, progress_of(route, ends, attempts or ATTEMPTS))
         return Answer(figures, lines, code=0 if complete else MISSED)
     if attempts is not None:
         raise ValueError("--attempts must not be given without --measured")
+    return _searched(lambda tell: _planned(find_all(route, output, threads, tell, overwrite)))
+
+
+def _searched(search: Callable[[ProgressCallback], Answer]) -> Answer:
+    """What a search found, with a bar over its paths; or why nothing moves the part."""
+    from active_surface.steering import Unmoved
+
     try:
         with counted("paths") as tell:
-            result = find_all(route, output, threads, tell, overwrite)
+            return search(tell)
     except Unmoved as error:
-        return _unmoved(error)
-    code = INTERRUPTED if result.interrupted else 0 if result.complete else MISSED
-    return Answer(report.plan_figures(result), report.plan_lines(result), code=code)
+        return Answer({"reached": False, "failure": str(error)}, [("missed", f"{error}.")], code=MISSED)
 
 
 def _aimed(result: Aimed) -> Answer:
@@ -133,8 +131,11 @@ def _aimed(result: Aimed) -> Answer:
     return Answer(report.figures(result), report.lines(result), code=code)
 
 
-def _unmoved(error: Exception) -> Answer:
-    return Answer({"reached": False, "failure": str(error)}, [("missed", f"{error}.")], code=MISSED)
+def _planned(result: Planned) -> Answer:
+    from active_surface.steering import report
+
+    code = INTERRUPTED if result.interrupted else 0 if result.complete else MISSED
+    return Answer(report.plan_figures(result), report.plan_lines(result), code=code)
 
 
 def _bounds(text: str | None) -> tuple[float, float] | None:

@@ -63,9 +63,9 @@ def test_a_hint_names_what_stood_at_its_bound(case, surface, own):
     strokes = [stop(k, "stroke", 0.0, 12e-6) for k in (0, 1)]
     slow, many = stop(1, "frequency", 60.0, 600.0, False), stop(1, "cycles", 1.0, 3.0)
     assert hints([*strokes, slow, many], aimed) == [
-        'actuators 0 and 1 stood at their largest stroke, 12 um; stroke = ["0 um", "24 um"] in [aim] widens it',
-        'actuator 1 stood at its smallest frequency, 60 Hz; frequency = ["30 Hz", "600 Hz"] in [aim] widens it',
-        "actuator 1 stood at its largest number of cycles, 3; cycles = [1, 6] in [aim] widens it",
+        'actuators 0 and 1 stood at their largest stroke, 12 um; stroke = ["0 um", "24 um"] in [aim] allows more',
+        'actuator 1 stood at its smallest frequency, 60 Hz; --frequency "30 Hz:600 Hz" allows more',
+        "actuator 1 stood at its largest number of cycles, 3; cycles = [1, 6] in [aim] allows more",
     ]
 
 
