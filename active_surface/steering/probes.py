@@ -16,7 +16,7 @@ from active_surface.steering.paths import Paths, driven
 from active_surface.steering.robustness import Disturbance
 from active_surface.steering.task import Task, offset, offset_of
 from common import quantity
-from coupling import run_case
+from coupling import answers_drives, run_case
 from coupling.case import ActuatorCase
 from particle import Outcome, SurfaceMotion, Trajectory, interruptible
 
@@ -55,7 +55,9 @@ class Probes:
         self._surface, self._threads, self.count = surface, threads, 0
         lowest, highest = (_frequency(task, end) for end in (0.0, math.inf))
         frequencies = np.unique(np.geomspace(max(lowest, highest / RANGE), highest, LEVELS)).tolist()
-        self._task = task.within(CYCLES / frequencies[0])
+        duration = CYCLES / frequencies[0] + (task.settings.delay or (0.0, 0.0))[0]
+        # A plate that answers its drives is solved up to the case's duration.
+        self._task = task.within(min(duration, task.case.run.duration) if answers_drives(task.case) else duration)
         way = offset(task.target, task.turn, task.case.part.position, task.case.part.heading)
         probes = self._of([(running, one) for running in self._sides() for one in frequencies], self._task)
         if all(np.hypot.reduce(one.moved) < LEAST * task.away for one in probes):
@@ -74,9 +76,10 @@ class Probes:
         """The setting of the knobs of a task, the same within another duration, whose path comes nearest its target."""
         found = []
         for one in self._of([(probe.running, probe.frequency) for probe in self.best], task):
-            period = 1 / one.frequency + 2 * one.actuators[task.movers[0]].dwell
-            cycles = np.arange(1, max(1, math.floor(one.path.time[-1] / period)) + 1)
-            at = one.path.at(np.minimum(cycles * period, one.path.time[-1]))
+            first = one.actuators[task.movers[0]]
+            period = 1 / one.frequency + 2 * first.dwell
+            cycles = np.arange(1, max(1, math.floor((one.path.time[-1] - first.delay) / period)) + 1)
+            at = one.path.at(np.minimum(first.delay + cycles * period, one.path.time[-1]))
             headings = np.zeros(len(cycles)) if at.heading is None else at.heading
             away = [
                 float(np.hypot.reduce(offset(task.target, task.turn, *there)))
