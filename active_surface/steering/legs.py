@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import Knobs, Stop, at_rest, is_schedulable, own_drives, shortest
 from active_surface.steering.paths import Paths, affordable, cost, driven, path_of, settled
-from active_surface.steering.probes import MAX_PROBES, Probes
+from active_surface.steering.probes import LEAST, MAX_PROBES, Probes, Unmoved
 from active_surface.steering.search import Search
 from active_surface.steering.task import Task
 from common import quantity
@@ -80,7 +80,7 @@ class Approach:
         """tell: is called with the number of paths so far and its maximum.  joined: other legs follow in a schedule."""
         self._surface, self._task, self._threads, self._tell, self._joined = surface, task, threads, tell, joined
         self._own = self._horizon = task.case.run.duration  # s; legs may take longer
-        self._searches = 0
+        self._searches, self._moves = 0, False  # the latter: whether the case's own drives move the part
         self._under_way: Callable[[], Way | None] = lambda: None  # the way of the current search
         self.best: Way | None = None
         self.paths = 0  # followed, without those of the current search
@@ -119,7 +119,13 @@ class Approach:
         if self._max_paths - self.paths < MAX_PROBES:
             return None
         doing("trying which actuators move the part")
-        probes, case, left = Probes(self._surface, task, self._threads), self._task.case, task.case.run.duration
+        case, left = self._task.case, task.case.run.duration
+        try:
+            probes = Probes(self._surface, task, self._threads)
+        except Unmoved:
+            if chain is not None or self._moves:
+                return None
+            raise
         self.paths += probes.count
         if task.settings.is_robust or not probes.best:
             return None
@@ -157,6 +163,7 @@ class Approach:
             return False
         way = self._followed((Leg(0.0, own, moving),), ())
         self.paths += 1
+        self._moves = way.path.distance > LEAST * task.away
         if not settled(way.path) or way.cost >= task.away:
             return False
         if not settings.is_robust:

@@ -60,7 +60,7 @@ class Probes:
         self._task = task.within(min(duration, task.case.run.duration) if answers_drives(task.case) else duration)
         way = offset(task.target, task.turn, task.case.part.position, task.case.part.heading)
         probes = self._of([(running, one) for running in self._sides() for one in frequencies], self._task)
-        if all(np.hypot.reduce(one.moved) < LEAST * task.away for one in probes):
+        if all(np.hypot.reduce(one.moved) < LEAST * task.away for one in probes if one.path.outcome in KEPT):
             raise Unmoved(self._why(probes))
         ahead = -way / np.hypot.reduce(way)
         speeds = [
