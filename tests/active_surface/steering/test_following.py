@@ -22,7 +22,7 @@ BELOW = {
     "actuators.*.frequency": 2e3,
 }  # of a part below both actuators, which drive it away
 AWAY = ((2e-6, -46e-6),)
-MORE = 1.5  # times the friction of the case
+MORE = 1.25  # times the friction of the case
 
 
 class Device:
