@@ -93,8 +93,8 @@ class Approach:
         max_paths, robust = self._max_paths, self._task.settings.is_robust
         if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
             self._search(self._task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
-        if not self.reached:
-            self._chain(LEGS * [MAX_PATHS[0]], together=True)
+        if not self.reached:  # disturbances of several legs add up
+            self._chain([int(ROBUST_AROUND * max_paths)] if robust else LEGS * [MAX_PATHS[0]], together=True)
         if not robust and not self.reached and FIRST * self._horizon >= _min_duration(self._task):
             self._chain(MAX_PATHS)
         if not self.reached:
@@ -127,7 +127,7 @@ class Approach:
                 return None
             raise
         self.paths += probes.count
-        if task.settings.is_robust or not probes.best:
+        if not probes.best:
             return None
         ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.movers) or answers_drives(case)
         if probes.time > left and not ends:

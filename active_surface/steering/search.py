@@ -130,15 +130,17 @@ class Search:
         """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
         nominal, robust, start = self._nominal, self._robust, self._start
         if not self.knobs.knobs or start is not None:
-            (robust or nominal).of((np.zeros(0) if start is None else start)[None])
+            (nominal if start is not None else robust or nominal).of((np.zeros(0) if start is None else start)[None])
         if not self.knobs.knobs:
             return
+        if start is not None and not nominal.reached and nominal.recent.cost <= self._newton_range:
+            _newton(self.knobs, nominal)
+        while (robust is None or start is not None) and not (nominal.reached or nominal.exhausted):
+            self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
         if robust is None:
-            if start is not None and not nominal.reached and nominal.recent.cost <= self._newton_range:
-                _newton(self.knobs, nominal)
-            while not (nominal.reached or nominal.exhausted):
-                self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
             return
+        if start is not None:
+            robust.of(nominal.best.values[None])
         while start is None and not nominal.exhausted:
             self._evolve(nominal, self._newton_range)
             robust.of(nominal.recent.values[None])
