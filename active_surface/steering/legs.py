@@ -31,7 +31,7 @@ DIGITS: Final = 12  # decimals of times in s, as many as a file shows
 MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
 MAX_CYCLES: Final = 200_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
 LEAST_PATHS: Final = 400
-LEGS: Final = 4  # with one frequency
+LEGS, MAX_PATHS_TOGETHER = 4, 300  # with one frequency, and for each
 LONGEST: Final = 20.0  # times the case's duration, that legs last where it is too short
 MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
 ROBUST_AROUND: Final = 0.25  # of all paths, of a robust search there
@@ -94,7 +94,7 @@ class Approach:
         if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
             self._search(self._task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
         if not self.reached:  # disturbances of several legs add up
-            self._chain([int(ROBUST_AROUND * max_paths)] if robust else LEGS * [MAX_PATHS[0]], together=True)
+            self._chain([int(ROBUST_AROUND * max_paths)] if robust else LEGS * [MAX_PATHS_TOGETHER], together=True)
         if not robust and not self.reached and FIRST * self._horizon >= _min_duration(self._task):
             self._chain(MAX_PATHS)
         if not self.reached:
@@ -129,7 +129,7 @@ class Approach:
         self.paths += probes.count
         if not probes.best:
             return None
-        ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.movers) or answers_drives(case)
+        ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.together) or answers_drives(case)
         if probes.time > left and not ends:
             begin, self._horizon = self._horizon - left, min(self._horizon - left + probes.time, LONGEST * self._own)
             self._task, task = self._task.within(self._horizon), task.within(self._horizon - begin)
@@ -185,7 +185,8 @@ class Approach:
         """
         if (left := self._max_paths - self.paths) <= 0:
             return None
-        knobs = Knobs(task.case, task.settings, task.movers, around, wide, start is not None)
+        movers = task.movers if start is None else task.together
+        knobs = Knobs(task.case, task.settings, movers, around, wide, start is not None)
         paths = Paths(task.case, self._surface, self._threads)
         first = knobs.own if around else start
 
@@ -196,7 +197,7 @@ class Approach:
 
         search = Search(paths, task, knobs, count, min(at_most, left), self._searches, first)
         self._searches += 1
-        self._under_way = partial(self._way, search, task.movers, chain)
+        self._under_way = partial(self._way, search, movers, chain)
         try:
             search.run()
         finally:

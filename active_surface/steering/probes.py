@@ -76,7 +76,7 @@ class Probes:
         """The setting of the knobs of a task, the same within another duration, whose path comes nearest its target."""
         found = []
         for one in self._of([(probe.running, probe.frequency) for probe in self.best], task):
-            first = one.actuators[task.movers[0]]
+            first = one.actuators[task.together[0]]
             period = 1 / one.frequency + 2 * first.dwell
             cycles = np.arange(1, max(1, math.floor((one.path.time[-1] - first.delay) / period)) + 1)
             at = one.path.at(np.minimum(first.delay + cycles * period, one.path.time[-1]))
@@ -115,7 +115,7 @@ class Probes:
             Probe(
                 running,
                 actuators,
-                actuators[task.movers[0]].frequency or 0.0,
+                actuators[task.together[0]].frequency or 0.0,
                 path,
                 offset_of(path, task.target, task.turn) - start,
             )
@@ -138,13 +138,13 @@ class Probes:
 
 
 def _knobs(task: Task) -> Knobs:
-    return Knobs(task.case, task.settings, task.movers, together=True)
+    return Knobs(task.case, task.settings, task.together, together=True)
 
 
 def _frequency(task: Task, wanted: float) -> float:
     """The frequency [Hz] within the bounds that is nearest to the one wanted."""
     knobs = _knobs(task)
-    return knobs.actuators(_row(knobs, frozenset(), wanted))[task.movers[0]].frequency or 0.0
+    return knobs.actuators(_row(knobs, frozenset(), wanted))[task.together[0]].frequency or 0.0
 
 
 def _row(knobs: Knobs, running: frozenset[int], frequency: float = math.inf, cycles: float = math.inf) -> FloatArray:

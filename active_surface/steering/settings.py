@@ -75,8 +75,8 @@ class Settings(Table):
         default=None, examples=[[0, 4]]
     )
     """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
-    nearest: Count = 9
-    """How many these are."""
+    nearest: Count | None = Field(default=None, examples=[4])
+    """How many these are; without it 9 at one frequency, 4 with a frequency each."""
     groups: Literal["each", "columns", "rows", "all"] = "each"
     """Which of them move alike: those of a column or row, all, or none."""
     frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None

@@ -27,6 +27,8 @@ from coupling.case import (
 )
 from particle import Trajectory
 
+TOGETHER, APART = 9, 4  # actuators that take part with one frequency for all, and with a frequency each
+
 Place = tuple[float, float]
 """(x, y) in m."""
 Mistake = tuple[str, str]
@@ -83,7 +85,12 @@ class Task:
 
     @property
     def movers(self) -> tuple[int, ...]:
-        """The numbers of the actuators that take part, ascending."""
+        """The numbers of the actuators that take part with a frequency each, ascending."""
+        return movers(self.case, self.settings, self.target, APART)
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """The same of those that take part with one frequency for all."""
         return movers(self.case, self.settings, self.target)
 
     @property
@@ -174,13 +181,13 @@ def _from(case: Case, start: Place | None, heading: float | None = None) -> Case
     return case.model_copy(update={"part": case.part.model_copy(update=rest), "source": None})
 
 
-def movers(case: Case, settings: Settings, target: Place) -> tuple[int, ...]:
+def movers(case: Case, settings: Settings, target: Place, nearest: int = TOGETHER) -> tuple[int, ...]:
     """The numbers of the actuators that take part on the way to a target [m]: those stated, or the nearest."""
     fit = able(case, settings)
     if settings.actuators is not None:
         return tuple(fit)
     away = _from_way(np.array([case.actuators[k].position for k in fit]), case.part.position, target)
-    order = np.argsort(away, kind="stable")[: settings.nearest].tolist()
+    order = np.argsort(away, kind="stable")[: settings.nearest or nearest].tolist()
     return tuple(sorted(fit[k] for k in order))
 
 

@@ -135,7 +135,7 @@ def test_the_actuators_nearest_to_the_way_take_part(tmp_path):
     assert Task(case, (1e-4, -9e-5), Settings(nearest=3)).movers == (0, 1, 2)
     assert Task(case, (-1e-4, 1e-4), Settings(nearest=3)).movers == (0, 3, 6)
     assert Task(case, (1e-4, -9e-5), Settings(nearest=20)).movers == tuple(range(9))
-    assert Route(case, ((1e-4, -9e-5), (1e-4, 1e-4)), Settings(nearest=4)).leg(1, (1e-4, -9e-5)).movers == (2, 4, 5, 8)
+    assert Route(case, ((1e-4, -9e-5), (1e-4, 1e-4))).leg(1, (1e-4, -9e-5)).movers == (2, 4, 5, 8)
 
 
 def test_way_points_are_checked_before_any_search(tmp_path):
