@@ -90,8 +90,7 @@ class Search:
     """Finds the drives that bring a part to a task's target within its case's duration; equal seeds, equal results.
 
     Newton's method is tried from a first setting, then populations evolve around it; without one anywhere. A robust
-    search evolves
-    undisturbed paths first, for half of the paths at most, then continues around the most robust of their best drives.
+    search evolves undisturbed paths anywhere for half of the paths, then continues around the most robust of the best.
     """
 
     def __init__(
@@ -129,22 +128,20 @@ class Search:
     def run(self) -> None:
         """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
         nominal, robust, start = self._nominal, self._robust, self._start
-        if not self.knobs.knobs or start is not None:
-            (nominal if start is not None else robust or nominal).of((np.zeros(0) if start is None else start)[None])
         if not self.knobs.knobs:
-            return
-        if start is not None and not nominal.reached and nominal.recent.cost <= self._newton_range:
-            _newton(self.knobs, nominal)
-        while (robust is None or start is not None) and not (nominal.reached or nominal.exhausted):
-            self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
-        if robust is None:
+            (robust or nominal).of(np.zeros((1, 0)))
             return
         if start is not None:
-            robust.of(nominal.best.values[None])
-        while start is None and not nominal.exhausted:
-            self._evolve(nominal, self._newton_range)
-            robust.of(nominal.recent.values[None])
-        if not robust.exhausted:
+            nominal.of(start[None])
+            if not nominal.reached and nominal.recent.cost <= self._newton_range:
+                _newton(self.knobs, nominal)
+            if robust is not None:
+                robust.of(nominal.best.values[None])
+        while not nominal.exhausted and (robust is not None or not nominal.reached):
+            self._evolve(nominal, self._newton_range, None if start is None or robust else nominal.best.values)
+            if robust is not None:
+                robust.of(nominal.recent.values[None])
+        if robust is not None and not robust.exhausted:
             self._evolve(robust, 0.0, robust.best.values)
 
     def _evolve(self, trials: Trials, newton_range: float, middle: FloatArray | None = None) -> None:
