@@ -68,6 +68,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/contact.py
 	$(BIN)/python benchmarks/schemes.py
 	$(BIN)/python benchmarks/top_face.py
+	$(BIN)/python benchmarks/faces.py
 	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
 	$(BIN)/python benchmarks/stretching_sweeps.py
 	$(BIN)/python benchmarks/inertia.py

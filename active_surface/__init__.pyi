@@ -4,11 +4,13 @@ import meshes as meshes
 from coupling import (
     Case as Case,
     CaseError as CaseError,
+    Comparison as Comparison,
     InputError as InputError,
     PartsResult as PartsResult,
     Result as Result,
     SavedRun as SavedRun,
     build_surface as build_surface,
+    compare as compare,
     read_case as read_case,
     read_parts as read_parts,
     read_run as read_run,
@@ -103,8 +105,13 @@ from .steering import (
     read_task as read_task,
 )
 from .studies import (
+    Basin as Basin,
+    Basins as Basins,
+    Drift as Drift,
+    DriftMap as DriftMap,
     Study as Study,
     Sweep as Sweep,
+    drift as drift,
     read_study as read_study,
     run_study as run_study,
 )

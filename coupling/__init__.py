@@ -11,11 +11,13 @@ __getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 __all__ = [  # public; the stub beside has also what other packages of the program use
     "Case",
     "CaseError",
+    "Comparison",
     "InputError",
     "PartsResult",
     "Result",
     "SavedRun",
     "build_surface",
+    "compare",
     "read_case",
     "read_parts",
     "read_run",

@@ -7,6 +7,7 @@ from .case import (
 )
 from .results.csv_file import write_csv as write_csv
 from .results.saved import SavedRun as SavedRun, read_run as read_run
+from .comparison import Comparison as Comparison, compare as compare
 from .batch import run_cases as run_cases, run_parts as run_parts
 from .parts import PartsResult as PartsResult
 from .result import Result as Result

@@ -91,15 +91,8 @@ class PlateFigures:
 def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
     """The figures of a plate under its drives and a part's path over it."""
     plate, shapes, drives, surface, stretch = scene.plate, scene.shapes, scene.lifts, scene.surface, scene.stretch
-    thickness = plate.section.thickness
-    if stretch is None:
-        moving = scene.moving_shapes, scene.moving_drives
-        sharp = sharp_points(plate.singular_corners, shapes.points)
-        slope, deflection, curvature = extremes(*moving, case.run.duration, sharp, thickness / 2)
-        strain = None if curvature is None else thickness / 2 * curvature + _residual_strain(plate)
-    else:
-        deflection, slope, strain = stretch.extremes
-    over_thickness = deflection / thickness
+    deflection, slope, strain = largest(scene, case.run.duration)
+    over_thickness = deflection / plate.section.thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
     tipping = tipping_of(case, contact, friction)
     # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
@@ -141,6 +134,16 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         bent_pull_off=bent and bent.pull_off,
         part_sag=sag,
     )
+
+
+def largest(scene: PlateScene, duration: float) -> tuple[float, float, float | None]:
+    """The largest deflection [m], slope and strain of a plate over a duration [s]; no strain of very many actuators."""
+    if scene.stretch is not None:
+        return scene.stretch.extremes
+    plate, half = scene.plate, scene.plate.section.thickness / 2
+    sharp = sharp_points(plate.singular_corners, scene.shapes.points)
+    slope, deflection, curvature = extremes(scene.moving_shapes, scene.moving_drives, duration, sharp, half)
+    return deflection, slope, None if curvature is None else half * curvature + _residual_strain(plate)
 
 
 def _residual_strain(plate: Plate) -> float:

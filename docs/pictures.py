@@ -24,6 +24,7 @@ from tolerance_pictures import draw_tolerance
 from active_surface.cli import main
 from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.studies import read_study, run_study
+from active_surface.studies.drifts import drift
 from active_surface.views import animate
 from coupling import read_case, run_case
 from coupling.display import display_mesh, onto_plate
@@ -85,6 +86,12 @@ def draw_aims() -> None:
         run_case(read_case(Path(folder) / "around_the_corner_planned.toml"), folder)
         film = ROOT / "docs/plan.gif"
         animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=200)
+
+
+def draw_drift() -> None:
+    with TemporaryDirectory() as folder:
+        drift(read_case(ROOT / "examples/device.toml"), "columns").write(Path(folder))
+        copy(Path(folder) / "device.drift.png", ROOT / "docs/drift.png")
 
 
 def draw_plates() -> None:
@@ -206,6 +213,7 @@ if __name__ == "__main__":
     draw_tutorial()
     draw_sweep()
     draw_aims()
+    draw_drift()
     draw_plates()
     draw_contact()
     draw_faces()

@@ -12,12 +12,11 @@ import numpy as np
 from active_surface.arrays import FloatArray, IntArray
 from active_surface.parameter import Parameter
 from active_surface.steering.settings import Settings
-from coupling.case import ActuatorCase, Case, find_field
+from coupling.case import ActuatorCase, Case, find_field, groups_of
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
 FEW_CYCLES = 1, 3  # over more of them the end point is less smooth
-ON_ONE_LINE = 1e-6  # of the largest distance between actuators: those of a column differ by less in x
 AT_BOUND = 1e-3  # of a knob's range: a value so near to its bound stands at it
 KEYS = ("frequency", "stroke", "delay", "cycles")
 SHARED = ("frequency", "cycles")  # by all in a search that has them together
@@ -74,7 +73,8 @@ class Knobs:
         """wide: without bounds of cycles in the settings, an actuator may have as many as in the case."""
         self.still = tuple(one if around or k in movers else at_rest(one) for k, one in enumerate(case.actuators))
         self.case, self.around = case, around
-        self.groups = [(k,) for k in movers] if around else groups_of(case, settings.groups, movers)
+        lines = groups_of(case, "each" if around else settings.groups).values()
+        self.groups = [group for line in lines if (group := tuple(k for k in line if k in movers))]
         self._fixed: dict[int, dict[str, float]] = {k: {} for k in movers}
         self.knobs: list[Knob] = []
         bounds = {
@@ -134,17 +134,6 @@ class Knobs:
             elif value <= knob.low + room and (knob.key == "frequency" or (knob.key == "stroke" and knob.low < 0)):
                 ends.append(Stop(knob, False))
         return tuple(ends)
-
-
-def groups_of(case: Case, groups: str, movers: Sequence[int]) -> list[tuple[int, ...]]:
-    """The actuators that take part in the groups that move alike: by columns or rows, all, or each by itself."""
-    if groups not in ("columns", "rows"):
-        return [tuple(movers)] if groups == "all" else [(k,) for k in movers]
-    places = np.array([case.actuators[k].position for k in movers])
-    along = places[:, 0 if groups == "columns" else 1]
-    order, near = np.argsort(along, kind="stable"), ON_ONE_LINE * float(np.ptp(places, axis=0).max())
-    lines = np.split(order, np.flatnonzero(np.diff(along[order]) > near) + 1)
-    return [tuple(sorted(movers[k] for k in line.tolist())) for line in lines]
 
 
 def _knob(case: Case, group: tuple[int, ...], key: str, low: float, high: float) -> Knob:

@@ -1,3 +1,4 @@
+from .drifts import Basin as Basin, Basins as Basins, Drift as Drift, DriftMap as DriftMap, drift as drift
 from .read import read_study as read_study
 from .run import Sweep as Sweep, run_study as run_study
 from .study import Study as Study

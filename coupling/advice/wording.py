@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from common import joined, percent, quantity
+from coupling.advice.choices import WAVES, Choice
 from coupling.advice.trials import Trial, no_advice
 from coupling.case import (
     Case,
@@ -39,6 +40,8 @@ def advised_case(case: Case, trial: Trial) -> Case:
             f"Input case of advised_case must have drives; the motion of its platform is measured, {case.plate.motion}"
         )
     update: dict[str, Any] = {"name": f"{case.name.removesuffix(ADVISED)}{ADVISED}", "source": None}
+    if trial.choice is not None:
+        case = trial.choice.of(case)
     if trial.ramp is not None:
         case = ramped_case(case, trial.ramp) or case
     if trial.friction != 1:
@@ -55,7 +58,7 @@ def advice_text(result: Result, trial: Trial | None) -> str:
     if trial is None:
         along = "farther" if result.summary.distance > NOTHING else "along"
         return no_advice(result) or f"No trial run kept it and carried it {along}."
-    changes = list[str]()
+    changes = [] if trial.choice is None else [_chosen(trial.choice)]
     if trial.stroke != 1:
         changes.append(f"{trial.stroke:g} times the stroke{_strokes(result.case, trial.stroke)}")
     if trial.ramp is not None:
@@ -70,7 +73,8 @@ def advice_text(result: Result, trial: Trial | None) -> str:
     if trial.plasticity_index is not None:
         changes.append(f"friction.plasticity_index = {trial.plasticity_index:g}")
     if trial.frequency != 1 or not (changes or trial.place):
-        drives = [drive for drive in (*result.scene.lifts, *result.scene.base) if travel(drive) > 0]
+        lifts = result.scene.lifts if trial.choice is None else [result.scene.lifts[k] for k in trial.choice.running]
+        drives = [drive for drive in (*lifts, *result.scene.base) if travel(drive) > 0]
         delayed = trial.frequency != 1 and any(drive.delay > 0 or not isinstance(drive, Drive) for drive in drives)
         own = _few([trial.frequency * drive.frequency for drive in drives], "Hz")
         times = " and all times of the drives divided alike" if delayed else ""
@@ -80,8 +84,26 @@ def advice_text(result: Result, trial: Trial | None) -> str:
     speed = quantity(trial.distance / trial.duration, "m/s", 2)
     return (
         f"A trial run{place}{changed} moves it by {quantity(trial.distance, 'm')} in {quantity(trial.duration, 's')}, "
-        f"{speed} on average{_beyond(result.summary, trial)}."
+        f"{speed} on average{_beyond(result.summary, trial)}.{_together(result, trial)}"
     )
+
+
+def _chosen(choice: Choice) -> str:
+    """Which actuators run."""
+    if choice.name == "columns":
+        return "each column a quarter of a period behind the one on its left"
+    if choice.name == "rows":
+        return "each row a quarter of a period behind the one below"
+    return f"actuator{'s' * (len(choice.running) > 1)} {joined([str(k) for k in choice.running])} alone"
+
+
+def _together(result: Result, trial: Trial) -> str:
+    """How much all actuators pull together, where the trial has some of them run alone; else empty."""
+    slip = result.summary.margins.slip
+    if trial.choice is None or trial.choice.name in WAVES or slip is None or not slip.value < 1:
+        return ""
+    count = len(result.case.actuators)
+    return f" {'Both' if count == 2 else f'All {count}'} together pull with {slip.value:.2g} of the friction limit."
 
 
 def _beyond(s: Summary, trial: Trial) -> str:
@@ -89,7 +111,8 @@ def _beyond(s: Summary, trial: Trial) -> str:
     if not isinstance(s, PlateSummary):
         return ""
     out, error = list[str](), (s.quasi_static_error or 0.0) * trial.frequency
-    over, strain = s.deflection_over_thickness * trial.stroke, (s.largest_strain or 0.0) * trial.stroke
+    over = s.deflection_over_thickness * trial.stroke
+    strain = (s.largest_strain or 0.0) * trial.stroke if trial.choice is None else 0.0  # which is in bounds
     if s.theory == "linear" and over > MAX_DEFLECTION:
         out.append(f"linear theory at {over:.2g} times the thickness")
     if strain > MAX_STRAIN:

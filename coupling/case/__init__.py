@@ -23,6 +23,7 @@ from coupling.case.friction import (
     TableCase,
     has_known_law,
 )
+from coupling.case.groups import endless_case, groups_of, running_case
 from coupling.case.part import PART_NAME, PartCase
 from coupling.case.plates import (
     INERTIA,
@@ -67,4 +68,4 @@ from coupling.case.values import (
     read_columns,
     unreadable,
 )
-from coupling.case.writing import json_schema, template, write_case, write_edited
+from coupling.case.writing import Difference, differences, json_schema, template, write_case, write_edited

@@ -20,7 +20,7 @@ from coupling.case.actuators import (
     half_size,
     must_be_inside,
 )
-from coupling.case.friction import CoulombCase, KogutEtsionCase, TableCase
+from coupling.case.friction import CoulombCase, FrictionCase, KogutEtsionCase, TableCase
 from coupling.case.part import PartCase
 from coupling.case.plates import INERTIA, PLATFORM, VON_KARMAN, MotionCase, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, Table, location_text, stated
@@ -70,7 +70,8 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
         except Faults as error:
             mistakes += error.mistakes
     mistakes += _face(tables, parts)
-    mistakes += _air(tables, parts)
+    mistakes += _air(tables, parts, friction)
+    mistakes += _jumps(tables, parts, made)
     if wrong := _too_many(plate, made, tables.run.duration):
         mistakes.append((("run", "duration"), wrong))
     if mistakes:
@@ -116,7 +117,7 @@ def _face(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mi
         )
 
 
-def _air(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
+def _air(tables: CaseTables, parts: Mapping[Location, PartCase], friction: FrictionCase) -> Iterator[Mistake]:
     """Yield what does not go with the air around the part."""
     if tables.air is None:
         return
@@ -127,14 +128,39 @@ def _air(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mis
         yield ("air", "film"), f"must be false with a footprint in {where}: only a point's square has a film"
     if tables.air.pressure == 0:
         return
-    if tables.air.film and isinstance(tables.friction, CoulombCase) and tables.friction.adhesion == 0:
+    if tables.air.film and isinstance(friction, CoulombCase) and friction.adhesion == 0:
         yield ("friction", "adhesion"), "must be greater than 0 with a film of air, whose gap follows from it"
+    elif tables.air.film and isinstance(friction, TableCase) and friction.loads and friction.loads[0] == 0:
+        at: Location = ("friction", "file") if "file" in stated(tables.friction) else ("friction", "loads", 0)
+        least = "the least load must be below 0" if at[1] == "file" else "must be below 0"
+        yield at, f"{least} with a film of air, whose gap follows from that pull-off force; got 0 N"
     if tables.run.scheme != "events":
         yield ("run", "scheme"), f'must be "events" with [air], unless that is a vacuum; got "{tables.run.scheme}"'
     if not isinstance(tables.friction, KogutEtsionCase):
         for place in (place for place, part in parts.items() if part.face is None and part.size is None):
             must = 'it must be a length such as "100 um", the side of the part'
             yield (*place, "size"), f"is missing; with [air], unless that is a vacuum, {must}"
+
+
+def _jumps(tables: CaseTables, parts: Mapping[Location, PartCase], made: Sequence[ActuatorCase]) -> Iterable[Mistake]:
+    """The drives whose velocity jumps under a film or a face; of a lattice only the first."""
+    film, motion = tables.air is not None and tables.air.film, getattr(tables.plate, "motion", None)
+    if not film and all(part.face is None for part in parts.values()):
+        return ()
+    under = "a film of air" if film else f"a footprint in {'[[parts]]' if tables.parts else '[part]'}"
+    places = (_location(k, len(tables.actuators), "")[:-1] for k in range(len(made)))
+    drives = [*zip(places, made, strict=True)]
+    if isinstance(motion, MotionCase):
+        drives += [(("plate", "motion", axis), drive) for axis, drive in motion if drive is not None]
+    found: dict[Location, str] = {}
+    for place, drive in drives:
+        if jump := drive.jump(tables.run.duration):
+            key, time = jump
+            when = f"as the drive {'begins' if key == 'delay' else 'ends'}, at {time * 1e3:g} ms"
+            avoided = 'phase = "0 deg"' if drive.cycle == "up-down" else "a ramp"
+            must = f"must not be given with {under}: the velocity jumps {when}; {avoided} avoids that"
+            found.setdefault((*place, key), must)
+    return found.items()
 
 
 def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:

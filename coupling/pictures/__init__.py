@@ -1,6 +1,7 @@
 """Pictures of cases and runs, which register here how they are drawn."""
 
 from coupling.pictures.case import draw_case
+from coupling.pictures.comparison import draw_comparison
 from coupling.pictures.figure import (
     clear_labels,
     map_axes,

@@ -20,7 +20,7 @@ CONTENTS = {  # the pages below a page, by caption
         "First steps": ["quick-start", "tutorial", "gallery/index"],
         "How to": [
             "howto/general-plates",
-            *("howto/measured-motion", "howto/waves", "howto/identify", "howto/optics"),
+            *("howto/drift", "howto/measured-motion", "howto/waves", "howto/identify", "howto/optics"),
         ],
         "The program": [
             *("commands", "case-file", "results", "pictures", "app"),

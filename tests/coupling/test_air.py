@@ -14,7 +14,8 @@ from active_surface import Track, identify
 from active_surface.studies.feasibility import feasibility
 from coupling import Case, PlateSummary, Summary, read_run, run_case, run_cases, warnings
 from coupling.air import AirFigures
-from coupling.case import InputError
+from coupling.case import DriveCase, InputError
+from coupling.drives import build_drive, first_jump
 from coupling.report import lines
 from particle import Outcome
 
@@ -220,6 +221,11 @@ def test_a_bow_is_found_from_a_track() -> None:
 
 FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radius": "50 um", "thickness": "50 um"}
 
+ENDS = {
+    "shape": "platform",
+    "motion": {"x": {"stroke": "1 um", "frequency": "2 kHz", "cycle": "sine", "cycles": 1}},
+}
+
 
 @pytest.mark.parametrize(
     ("tables", "said"),
@@ -231,11 +237,27 @@ FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radi
             {**FILM, "friction": {"model": "coulomb", "coefficient": 0.1}},
             "friction.adhesion of Case must be greater than 0 with a film of air",
         ),
+        (
+            {**FILM, "friction": {"model": "table", "loads": [0.0, 1e-6, 2e-6], "limits": [0.0, 1e-8, 2e-8]}},
+            r"friction.loads\[0\] of Case must be below 0 with a film of air",
+        ),
+        ({**FILM, "plate": ENDS}, "plate.motion.x.cycles of Case must not be given with a film .* ends, at 0.5 ms"),
+        ({"part": FACE, "plate": ENDS}, r"plate.motion.x.cycles of Case must not be given with a footprint in .part."),
     ],
 )
 def test_what_does_not_go_with_a_film_is_refused(tables: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         case(**tables)
+
+
+@pytest.mark.parametrize("cycle", ["up-down", "sine", "cosine"])
+@pytest.mark.parametrize("times", [{}, {"delay": 0.3e-3}, {"cycles": 2}, {"cycles": 2, "delay": 0.3e-3}, {"cycles": 9}])
+def test_a_case_knows_the_jumps_of_its_drives(cycle: str, times: dict[str, Any]) -> None:
+    waits = {"dwell": 0.1e-3} if cycle == "up-down" else {}
+    for degrees in (0, 30, 90, 150, 170, 180, 270, 355):
+        own = DriveCase(stroke=1e-6, frequency=1e3, cycle=cycle, phase=math.radians(degrees), **times, **waits)
+        known = own.jump(3e-3)
+        assert (known and known[1]) == pytest.approx(first_jump([build_drive(own)], 3e-3)), degrees
 
 
 def test_what_leaves_a_film_out_says_so() -> None:

@@ -148,5 +148,5 @@ def test_trials_of_another_rough_contact_keep_the_area_of_the_face():
     face = {"footprint": "rectangle", "sides": ["200 um", "60 um"], "thickness": "1 um"}
     case = Case.model_validate(CASE | {"part": face | {"mass": "2e-9 kg", "position": ["0 um", "0 um"]}})
     still = SimpleNamespace(outcome="stuck", distance=0.0)
-    trials = Trials(SimpleNamespace(case=case, scene=build_scene(case), trajectory=still), 1.0)
+    trials = Trials(SimpleNamespace(case=case, scene=build_scene(case), trajectory=still, summary=None), 1.0)
     assert trials.law(Setting(plasticity=6.0)).contact_area == pytest.approx(1.2e-8)

@@ -147,7 +147,7 @@ def test_advice_on_a_measured_motion_names_no_strokes(tmp_path):
     file.write_text("time [ms], x [um]\n" + "".join(f"{k}, {0.1 * math.sin(k)}\n" for k in range(60)))
     result = run_case(case(str(file), {"duration": 5e-2}))
     assert "times the stroke" in said(result)
-    assert advice_text(result, advise(result)).startswith("A trial run with ")
+    assert advice_text(result, advise(result)[0]).startswith("A trial run with ")
 
 
 def test_a_measured_motion_is_not_written_over(tmp_path):

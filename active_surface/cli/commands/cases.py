@@ -113,8 +113,8 @@ def _warnings(case: Case) -> list[str]:
 def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -> Answer:
     """Search for drives that move the part of CASE and keep it.
 
-    Runs CASE, then tries other frequencies, strokes, friction and starts until one carries the part far. Writes that
-    case to NAME_advised.toml.
+    Runs CASE, then tries rows, columns and single actuators alone, waves, other frequencies, strokes and starts, and
+    less friction only where none of these carries the part. Writes the best case to NAME_advised.toml.
     """
     parsed = read(case)
     from coupling import advice, check_free, report, run_case, stage_count
@@ -125,15 +125,17 @@ def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -
     with stages(stage_count(parsed)) as bar:
         result = run_case(parsed, None, bar)
         with bar("Trying other drives"):
-            trial = advice.advise(result)
+            ranked = advice.advise(result)
+    trial = ranked[0] if ranked else None
     thresholds, text = result.summary.thresholds, advice.advice_text(result, trial)
-    figures = {"thresholds": thresholds and asdict(thresholds), "trial": trial and asdict(trial)}
+    figures = {"thresholds": thresholds and asdict(thresholds), "trials": [asdict(one) for one in ranked]}
     lines = [row for row in report.lines(result.summary) if row[0] in ("outcome", "thresholds")]
     files = []
     if trial is not None and not result.scene.fits:
         moving, comment = advice.advised_case(parsed, trial), f"The advice on {case.name}: {text}"
         files = [write_edited(moving, parsed, case.absolute().parent, file, comment)]
-    return Answer(figures, [*lines, ("advice", text)], files=files)
+    others = [("or" if k == 0 else "", advice.advice_text(result, one)) for k, one in enumerate(ranked[1:])]
+    return Answer(figures, [*lines, ("advice", text), *others], files=files)
 
 
 @command

@@ -1,14 +1,15 @@
-"""The commands `animate`, `export`, `plot`, `rerun` and `view`, which take a result."""
+"""The commands `animate`, `compare`, `export`, `plot`, `rerun` and `view`, which take a result."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import click
 
 from active_surface.cli.command import Answer, argument, command, option
-from active_surface.cli.options import FILE, FOLDER, NOT_NEGATIVE, RESULTS, counted, stages
+from active_surface.cli.options import FILE, FOLDER, NOT_NEGATIVE, RESULTS, Output, counted, stages
+from active_surface.cli.refusal import read
 
 PARTIAL = "The files were not written to the end: the surface is drawn from the steps that they have."
 
@@ -54,6 +55,37 @@ def animate(
         ("heights", f"drawn {made.exaggeration:.6g} times as large as lengths"),
     ]
     return Answer(made.as_dict(), lines, made.warnings, [made.file])
+
+
+@command
+def compare(a: Path, b: Path, output: Output = RESULTS) -> Answer:
+    """Show A and B side by side: what differs in them, where the parts end, and where their paths part.
+
+    Each is a case file, which is run and not written, or a result: a file of a run, or FOLDER/NAME. Draws both into
+    NAME_and_NAME.png.
+    """
+    from coupling import Case, read_run, run_case, stage_count
+    from coupling import compare as compared
+    from coupling.pictures import draw_run
+
+    found: list[Any] = []
+    for name, path in (("a", a), ("b", b)):
+        if path.suffix == ".toml":
+            found.append(read(path))
+            continue
+        try:
+            found.append(read_run(path))
+        except ValueError as error:
+            said = str(error).replace("Input path must be", f"Input {name} must be a case file or", 1)
+            raise ValueError(said) from None
+    cases = [one for one in found if isinstance(one, Case)]
+    with stages(sum(stage_count(case) - 1 for case in cases) + 1) as bar:  # no results are written
+        comparison = compared(*(run_case(one, None, bar) if isinstance(one, Case) else one for one in found))
+        with bar("Drawing"):
+            output.mkdir(parents=True, exist_ok=True)
+            one, other = (name.partition(",")[0] for name in comparison.names)
+            picture = draw_run(comparison, output / f"{one}_and_{other}.png")
+    return Answer(comparison.as_dict(), comparison.lines, comparison.warnings, [picture])
 
 
 @command

@@ -1,4 +1,4 @@
-"""The commands `sweep`, `feasibility` and `response`: many runs, or all frequencies of a plate."""
+"""The commands `sweep`, `feasibility`, `drift` and `response`: many runs, or all frequencies of a plate."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Annotated
 
 from active_surface.cli.command import Answer, command, option
 from active_surface.cli.options import (
+    POSITIVE,
     RESULTS,
     Output,
     Threads,
@@ -108,6 +109,31 @@ def feasibility(
     figures = result.figures() | {"picked": None if picked is None else picked.figures()}
     rows = lines(figures) + ([] if picked is None else [("picked", picked.text)])
     return Answer(figures, rows, warnings(figures), files)
+
+
+@command
+def drift(
+    case: Path,
+    groups: Annotated[
+        str, option("Actuators that run at a time: all, or each of the columns, rows, or actuators (each).", "--groups")
+    ] = "all",
+    across: Annotated[int | None, option("Places along the plate's longer side [32].", type=POSITIVE)] = None,
+    threads: Threads = None,
+    output: Output = RESULTS,
+) -> Answer:
+    """Show where the drives of CASE carry its part from everywhere on the plate, and where it ends.
+
+    Follows the part from rest at each place over one period of the drives, and from there on by the map of these; says
+    how far runs end from that. Writes NAME.drift.nc and NAME.drift.png.
+    """
+    parsed = read(case)
+    from active_surface.studies.drifts import ACROSS, STAGES, running_groups
+    from active_surface.studies.drifts import drift as find
+
+    with stages(STAGES * len(running_groups(parsed, groups))) as bar:
+        found = find(parsed, groups, ACROSS if across is None else across, threads, bar)
+        files = found.write(output)
+    return Answer(found.figures(), found.lines(), found.warnings(), files)
 
 
 @command

@@ -37,11 +37,9 @@ def squares_within(outline: Outline, across: int, rest: PartAtRest | None = None
     counts = np.ceil((high - low) / side - 1e-9).astype(int)
     along = [middle + side * (np.arange(n) - (n - 1) / 2) for middle, n in zip((low + high) / 2, counts, strict=True)]
     grid = np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)
-    inside = outline.gap(grid.reshape(-1, 2)).reshape(counts) > 0
-    if rest is not None and rest.face is not None:
-        inside[inside] = _on_plate(outline, rest.face, rest.pose[2], grid[inside])
-        if not inside.any():
-            raise ValueError(f"Input across of areas must let the part lie on the plate at some place; got {across}")
+    inside = on_plate(outline, grid.reshape(-1, 2), rest).reshape(counts)
+    if not inside.any():
+        raise ValueError(f"Input across must let the part lie on the plate at some place; got {across}")
     numbers = np.full(counts + 2, -1)
     numbers[1:-1, 1:-1][inside] = np.arange(inside.sum())
     around = [numbers[:-2, 1:-1], numbers[2:, 1:-1], numbers[1:-1, :-2], numbers[1:-1, 2:]]
@@ -49,8 +47,16 @@ def squares_within(outline: Outline, across: int, rest: PartAtRest | None = None
     return Squares(grid[inside], side, np.where(neighbours < 0, np.arange(len(neighbours))[:, None], neighbours))
 
 
-def _on_plate(outline: Outline, face: Face, heading: float, places: FloatArray) -> BoolArray:
-    """Whether a face is on the plate, at places (n, 2) [m] of its origin and a heading [rad]."""
+def on_plate(outline: Outline, places: FloatArray, rest: PartAtRest | None) -> BoolArray:
+    """Whether a part lies on the plate, at places (n, 2) [m] of its origin; a face with all of it."""
+    inside = outline.gap(places) > 0
+    if rest is not None and rest.face is not None:
+        inside[inside] = _lies(outline, rest.face, rest.pose[2], places[inside])
+    return inside
+
+
+def _lies(outline: Outline, face: Face, heading: float, places: FloatArray) -> BoolArray:
+    """Whether a face lies on the plate, at places (n, 2) [m] of its origin and a heading [rad]."""
     turn = np.array([[math.cos(heading), math.sin(heading)], [-math.sin(heading), math.cos(heading)]])
     on = outline.gap(places) >= face.radius
     for point in np.concatenate([face.corners, face.places]) @ turn:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Final, Literal
@@ -33,6 +34,7 @@ MAX_CYCLES: Final = 1_000_000  # of segments
 MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
 SHORTEST_RAMP, LONGEST_RAMP = 0.01, 1000
 _SLACK: Final = 1 + 1e-9  # for limits that are met exactly
+_ROUNDING: Final = 1e-9  # of a cycle, or of the fastest velocity in it
 _RAMP: Final = f"0, or a number of cycles from {SHORTEST_RAMP} to {LONGEST_RAMP}"
 _REPEATS: Final = f'a whole number from 1 to {MAX_PASSES}, or "{ENDLESS}"'
 _POINTS: Final = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
@@ -143,6 +145,21 @@ class DriveCase(Table):
     """How often a table or schedule comes."""
     delay: Time = Field(default=0.0, ge=0)
     """The rest before all this."""
+
+    def jump(self, duration: float) -> tuple[str, float] | None:
+        """The key with which its velocity jumps in a run of a duration [s], and when [s]; None: it does not.
+
+        It does so where its `delay` or its `cycles` end, if it moves at its phase and has no ramp.
+        """
+        if not self.frequency or self.ramp or self.cycle == "up" or not amplitude(self):
+            return None
+        period, turn = 1 / self.frequency + 2 * self.dwell, self.phase % (2 * math.pi)
+        if self.cycle == "up-down":
+            moves = _ROUNDING < turn / (2 * math.pi) * period % (period / 2) * self.frequency < 0.5 - _ROUNDING
+        else:
+            moves = abs(math.cos(turn) if self.cycle == "sine" else math.sin(turn)) > _ROUNDING
+        times = {"delay": self.delay, "cycles": self.delay + (self.cycles or 0) * period}
+        return next(((key, at) for key, at in times.items() if moves and 0 < at < duration * (1 - _ROUNDING)), None)
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:

@@ -2,4 +2,4 @@
 
 from coupling.case.writing.edit import write_edited
 from coupling.case.writing.template import json_schema, template
-from coupling.case.writing.text import write_case
+from coupling.case.writing.text import Difference, differences, write_case

@@ -9,10 +9,11 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from coupling.case.case import Case
-from coupling.case.table import Table, stated
+from coupling.case.fields import ALL, plain_case
+from coupling.case.table import Location, Table, stated
 from coupling.case.values import Quantity, kinds_of_items, prefixed, quantity_of, unit_of
 from coupling.files import whole_file
 
@@ -118,3 +119,55 @@ def _readable(number: Decimal) -> bool:
 def _plain(number: Decimal) -> str:
     """A number, without a power of ten where that is readable."""
     return f"{number.normalize():{'f' if _readable(number) else 'e'}}"
+
+
+class Difference(NamedTuple):
+    """A field in which two cases differ, and its values with their units; "-": it has none there."""
+
+    field: str  # its place as in studies; with * for all actuators
+    first: str
+    second: str
+
+
+def differences(first: Case, second: Case) -> Iterator[Difference]:
+    """Yield the fields in which two cases differ; a field that names a file where that has other contents."""
+    one, other = dict(_leaves(plain_case(first))), dict(_leaves(plain_case(second)))
+    found: dict[Location, list[Difference]] = {}
+    for place in one | other:
+        (value, text, given), (value_2, text_2, given_2) = (
+            side.get(place, (None, "-", False)) for side in (one, other)
+        )
+        if value != value_2 and (given or given_2):
+            general = (place[0], ALL, *place[2:]) if place[0] == "actuators" else place
+            again = f" ({'other contents' if isinstance(value, bytes) else 'by rounding'})" if text == text_2 else ""
+            found.setdefault(general, []).append(Difference(".".join(map(str, place)), text, text_2 + again))
+    count = len(first.actuators) if len(first.actuators) == len(second.actuators) else 0
+    for place, rows in found.items():
+        alike = 1 < len(rows) == count and len({row[1:] for row in rows}) == 1
+        yield from [Difference(".".join(map(str, place)), *rows[0][1:])] if alike else rows
+
+
+def _leaves(
+    value: Any, annotation: Any = None, place: Location = (), given: bool = True
+) -> Iterator[tuple[Location, Any]]:
+    """Yield the place of each field that has a value; its value, its text, and whether it is not what it would be."""
+    if isinstance(value, Table):
+        for key, field in type(value).model_fields.items():
+            yield from _leaves(getattr(value, key), field.rebuild_annotation(), (*place, key), key in stated(value))
+    elif not place or (isinstance(value, tuple) and value and isinstance(value[0], Table)):
+        for name, item in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _leaves(item, None, (*place, name))
+    elif (place[0], place[-1]) in FILES and isinstance(value, str):
+        yield place, (Path(value).read_bytes(), Path(value).name, given)
+    elif value is not None and value != ():
+        quantity = quantity_of(annotation, lists=False)
+        angle = quantity and quantity.unit == "rad"
+        text = written(value, annotation, "0 deg") if angle else written(_rounded(value), annotation)
+        yield place, (value, text.replace('"', ""), given)
+
+
+def _rounded(value: Any) -> Any:
+    """The value with its numbers to twelve digits, as people read them."""
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    return float(f"{value:.12g}") if isinstance(value, float) else value

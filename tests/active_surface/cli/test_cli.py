@@ -166,7 +166,7 @@ def test_advise_writes_a_case_which_moves(tmp_path):
     again = CliRunner().invoke(main, ["advise", str(file), *arguments])
     assert again.exit_code == 2 and f"which has {new.name}: --overwrite replaces it" in again.output
     moved = json.loads(CliRunner().invoke(main, ["run", str(new), *arguments]).stdout)
-    assert moved["distance"] == pytest.approx(still["trial"]["distance"], rel=1e-3)
+    assert moved["distance"] == pytest.approx(still["trials"][0]["distance"], rel=1e-3)
 
 
 @pytest.mark.compiled

@@ -106,7 +106,12 @@ def test_a_file_without_its_command_or_with_another_is_told_which(folder: Path, 
 
 def test_every_command_refuses_a_file_that_is_not_there(folder: Path) -> None:
     needed = {"aim": ["--target", "0,0"], "plan": ["--through", "0,0"], "identify": ["--track", "none.csv"]}
-    needed |= {"export": ["--format", "csv"], "influence": ["-l", "npz"], "fit": ["none.toml"]}
+    needed |= {
+        "compare": ["none.toml"],
+        "export": ["--format", "csv"],
+        "influence": ["-l", "npz"],
+        "fit": ["none.toml"],
+    }
     before = sorted(folder.rglob("*"))
     for name in sorted({*main.commands} - {"completion", "reproduce", "schema", "verify"}):
         assert "none" in refused(name, "none.toml", *needed.get(name, [])), name

@@ -175,5 +175,5 @@ def test_a_case_has_the_areas_of_its_face():
 
 def test_a_face_that_has_no_room_is_refused():
     large = bar(footprint=Footprint.disc(290e-6))
-    with pytest.raises(ValueError, match="^Input across of areas must let the part lie .* got 10$"):
+    with pytest.raises(ValueError, match="^Input across must let the part lie .* got 10$"):
         find_feasible(plate(), SHAPES.outline, large, LAW, PERIOD, np.ones(1), across=10)
