@@ -32,6 +32,7 @@ MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
 MAX_CYCLES: Final = 200_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
 LEAST_PATHS: Final = 400
 LEGS, MAX_PATHS_TOGETHER = 4, 300  # with one frequency, and for each
+PROBED: Final = 0.25  # of the paths that are left, which probes may take
 LONGEST: Final = 20.0  # times the case's duration, that legs last where it is too short
 MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
 ROBUST_AROUND: Final = 0.25  # of all paths, of a robust search there
@@ -116,7 +117,7 @@ class Approach:
 
     def _probed(self, task: Task, chain: Way | None, at_most: int) -> Way | None:
         """Search around the best probe of a leg, in a longer time where the leg takes that."""
-        if self._max_paths - self.paths < MAX_PROBES:
+        if PROBED * (self._max_paths - self.paths) < MAX_PROBES:
             return None
         doing("runs to see which actuators move the part")
         case, left = self._task.case, task.case.run.duration
