@@ -31,8 +31,8 @@ DIGITS: Final = 12  # decimals of times in s, as many as a file shows
 MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
 MAX_CYCLES: Final = 200_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
 LEAST_PATHS: Final = 400
-LEGS, MAX_PATHS_TOGETHER = 4, 300  # with one frequency, and for each
-PROBED: Final = 0.25  # of the paths that are left, which probes may take
+LEGS, MAX_PATHS_TOGETHER = 8, 100  # with one frequency, and for each
+PROBED: Final = 0.25  # of all paths, which probes may take where the case's own drives are not stuck
 LONGEST: Final = 20.0  # times the case's duration, that legs last where it is too short
 MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
 ROBUST_AROUND: Final = 0.25  # of all paths, of a robust search there
@@ -81,7 +81,8 @@ class Approach:
         """tell: is called with the number of paths so far and its maximum.  joined: other legs follow in a schedule."""
         self._surface, self._task, self._threads, self._tell, self._joined = surface, task, threads, tell, joined
         self._own = self._horizon = task.case.run.duration  # s; legs may take longer
-        self._searches, self._moves = 0, False  # the latter: whether the case's own drives move the part
+        self._searches = 0
+        self._moves: bool | None = None  # whether the case's own drives move the part; None: beyond bounds, not tried
         self._under_way: Callable[[], Way | None] = lambda: None  # the way of the current search
         self.best: Way | None = None
         self.paths = 0  # followed, without those of the current search
@@ -117,7 +118,7 @@ class Approach:
 
     def _probed(self, task: Task, chain: Way | None, at_most: int) -> Way | None:
         """Search around the best probe of a leg, in a longer time where the leg takes that."""
-        if PROBED * (self._max_paths - self.paths) < MAX_PROBES:
+        if (1.0 if chain or self._moves is False else PROBED) * (self._max_paths - self.paths) < MAX_PROBES:
             return None
         doing("runs to see which actuators move the part")
         case, left = self._task.case, task.case.run.duration
@@ -131,6 +132,8 @@ class Approach:
         if not probes.best:
             return None
         ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.together) or answers_drives(case)
+        if probes.time > left and self._moves:  # at frequencies of their own they may be faster
+            return None
         if probes.time > left and not ends:
             begin, self._horizon = self._horizon - left, min(self._horizon - left + probes.time, LONGEST * self._own)
             self._task, task = self._task.within(self._horizon), task.within(self._horizon - begin)
