@@ -7,22 +7,24 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-from active_surface.steering import Aimed, Task, aim_over, prepared
+from active_surface.steering import Aimed, Settings, Task, aim_over, prepared
 from coupling.case import Case, length_text
 from particle import Trajectory
 
 NEARER: Final = 0.99  # of the distance at the start: drives that leave more are not taken
 APART: Final = 0.2  # s, of looks at the search
 
-Watch = Callable[[int, int, Trajectory | None], object]
-"""Gets how many paths were followed, and of how many, and the path of the best drives."""
+CHOSEN: Final = ("groups", "frequency", "stroke")  # settings that the page has
+
+Watch = Callable[[int, int, float, Trajectory | None], object]
+"""Gets how many paths were followed, of how many, how long [s] the others take, and the path of the best drives."""
 
 
 class Search:
     """A search that another thread can stop."""
 
-    def __init__(self, case: Case, target: tuple[float, float]) -> None:
-        self.case, self.target = case, target
+    def __init__(self, case: Case, target: tuple[float, float], settings: Settings | None = None) -> None:
+        self.case, self.target, self.settings = case, target, settings or Settings()
         self._stopped = False
 
     def run(self, watch: Watch) -> Aimed | None:
@@ -30,8 +32,8 @@ class Search:
 
         Raises ValueError where the target cannot be reached, or the case cannot be run.
         """
-        task = Task(self.case, self.target)
-        looked, counts = 0.0, (0, 0)
+        task = Task(self.case, self.target, self.settings)
+        began, looked, counts = time.monotonic(), 0.0, (0, 0)
 
         def tell(done: int, of: int) -> None:
             nonlocal counts
@@ -42,8 +44,8 @@ class Search:
         def watched(look: Callable[[], Trajectory | None]) -> None:
             nonlocal looked
             if time.monotonic() - looked >= APART:
-                looked = time.monotonic()
-                watch(*counts, look())
+                (done, of), looked = counts, time.monotonic()
+                watch(done, of, (of - done) * (looked - began) / max(done, 1), look())
 
         try:
             return aim_over(prepared(task.case, task.settings), task, tell=tell, watch=watched)

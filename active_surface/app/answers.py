@@ -209,15 +209,15 @@ class Answers:
         """Whether a search is on."""
         return self._search is not None
 
-    def aim(self, case: Case, target: tuple[float, float], take: Callable[[Case], object]) -> None:
-        """Search for drives to a target [m]; take: gets the case with them.
+    def aim(self, search: Search, take: Callable[[Case], object]) -> None:
+        """Search for drives; take: gets the case with them.
 
         Raises Refused while another search is on.
         """
         if self._search is not None:
             raise Refused([("", "a search is on: stop it first")])
-        self._search = Search(case, target)
-        self.spawn(self._aim(self._search, take))
+        self._search = search
+        self.spawn(self._aim(search, take))
 
     def stop(self) -> None:
         """End the search, if there is one, with its best drives so far."""
@@ -227,9 +227,9 @@ class Answers:
     async def _aim(self, search: Search, take: Callable[[Case], object]) -> None:
         unit, found = unit_of(search.case), self._from_thread()
 
-        def watch(done: int, of: int, best: Trajectory | None) -> None:
+        def watch(done: int, of: int, left: float, best: Trajectory | None) -> None:
             shown = {} if best is None else path_of(best, unit) | {"away": search.away(best)}
-            found({"kind": "search", "done": done, "of": of, **shown})
+            found({"kind": "search", "done": done, "of": of, "left": left, **shown})
 
         try:
             result: Aimed | None = await self._lanes.run(self._lanes.full, search.run, watch)

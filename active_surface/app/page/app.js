@@ -146,9 +146,10 @@ const TAKES = {
     setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
     element("picture").disabled = false;
   },
-  search({ done, of, line, heading, away }) {
+  search({ done, of, left, line, heading, away }) {
     beginSearch();
-    if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
+    const time = left < 90 ? `${Math.ceil(left)} s` : `${Math.round(left / 60)} min`;
+    if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths, at most about ${time} left …`;
     if (!line) return;
     nowPath = { ...pairs(unpack(line)), heading, coarse: ["search"], exact: false };
     drawPath();
@@ -243,8 +244,16 @@ function endSearch() {
   element("busy").textContent = "";
 }
 
+// What drives may be, as far as it is said.
+function aimSettings() {
+  const bounds = (key) => [0, 1].map((k) => element(`aim-${key}-${k}`).value.trim());
+  const given = ["frequency", "stroke"].map((key) => [key, bounds(key)]).filter(([, ends]) => ends.some(Boolean));
+  return { groups: element("aim-groups").value, ...Object.fromEntries(given) };
+}
+
 function setAiming(on) {
   aiming = on;
+  element("aim-options").hidden = !on;
   element("aim").setAttribute("aria-pressed", on);
   element("map-box").classList.toggle("aiming", on);
   target = on ? target ?? [...mapData.start] : null;
@@ -277,10 +286,11 @@ onTarget = (place) => {
   aiming = false;
   element("aim").setAttribute("aria-pressed", false);
   element("map-box").classList.remove("aiming");
+  element("aim-options").hidden = true;
   drawMap();
   beginSearch();
   element("busy").textContent = "Searching …";
-  ask({ do: "aim", target: place.map((c) => c / mapData.perSI) });
+  ask({ do: "aim", target: place.map((c) => c / mapData.perSI), settings: aimSettings() });
 };
 stepShown = (step) => drawHeights(step);
 
