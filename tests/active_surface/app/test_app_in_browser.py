@@ -157,6 +157,23 @@ def test_where_parts_go_is_drawn_and_marked_as_old_once_something_changes(opened
     assert not arrows.get_attribute("d") and not note.text
 
 
+def test_an_aim_has_bounds_and_says_how_long_it_takes_until_it_is_stopped(opened):
+    browser, _ = opened
+    for name, text in (("aim", None), ("aim-frequency-0", "12 mm"), ("aim-frequency-1", "500 Hz")):
+        one = browser.find_element(By.ID, name)
+        one.send_keys(text) if text else one.click()
+    target = '[data-key="target"]'
+    browser.find_element(By.CSS_SELECTOR, target).send_keys(Keys.ARROW_RIGHT, Keys.ENTER)
+    wait(lambda: "12 mm" in browser.find_element(By.ID, "mistakes").text)
+    browser.find_element(By.ID, "aim").click()
+    browser.execute_script("element('aim-frequency-0').value = '200 Hz'; element('aim-groups').value = 'all'")
+    browser.find_element(By.CSS_SELECTOR, target).send_keys(Keys.ARROW_RIGHT, Keys.ENTER)
+    wait(lambda: "left" in browser.find_element(By.ID, "busy").text or browser.execute_script("return !searching"))
+    browser.execute_script("ask({ do: 'stop' })")
+    wait(lambda: browser.execute_script("return !searching"))
+    assert browser.find_element(By.ID, "note").get_attribute("textContent")
+
+
 MAPPED = """
 const [x, y] = mapAxes().map((axis) => axis.range), [{ z }] = element("map").data, heights = heightsAt(shown);
 const nodes = nodesIn(x, y, mapData.perSI / perMetre(units.length));

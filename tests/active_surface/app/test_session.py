@@ -56,6 +56,10 @@ def path(tmp_path):
     return tmp_path / "mine.toml"
 
 
+def ends(page):
+    return page.session._answers._search.settings.frequency
+
+
 def floats(packed):
     return np.frombuffer(base64.b64decode(packed["bytes"]), "<f4")
 
@@ -111,6 +115,16 @@ NONSENSE = [
     *({"do": "select", "actuator": "9"}, {"do": "select"}),
     *({"do": "save", "name": name} for name in (None, "../x.toml", "/tmp/x.toml", ".toml", "x.txt")),
     *({"do": "aim", "target": target} for target in (None, [1e400, 0], [True, 0], [1.0, 1.0])),
+    *(
+        {"do": "aim", "target": [1e-5, 0], "settings": settings}
+        for settings in (
+            3,
+            {"paths": 3},
+            {"groups": "some"},
+            {"stroke": ["", "9 um"]},
+            {"frequency": ["2 kHz", "1 kHz"]},
+        )
+    ),
 ]
 
 
@@ -232,8 +246,10 @@ def test_a_search_is_watched_stopped_and_its_drives_taken(path):
     async def work():
         async with Page(path) as page:
             await page.wait("run")
-            page.session.take({"do": "aim", "target": [70e-6, 26e-6]})
-            await page.wait("search")
+            settings = {"groups": "all", "frequency": ["850 Hz", "950 Hz"]}
+            page.session.take({"do": "aim", "target": [70e-6, 26e-6], "settings": settings})
+            assert (await page.wait("search"))["left"] >= 0
+            assert (page.session._answers._search.settings.groups, ends(page)) == ("all", (850.0, 950.0))
             for other in (
                 {"do": "aim", "target": [1e-5, 0]},
                 {"do": "set", "changes": {"part.mass": "1 ug"}},
