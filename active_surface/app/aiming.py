@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Final
 
 from active_surface.steering import Aimed, Settings, Task, aim_over, prepared
+from coupling import report
 from coupling.case import Case, length_text
 from particle import Trajectory
 
@@ -58,7 +59,7 @@ class Search:
 
     def away(self, path: Trajectory) -> str:
         """How far from the target a path ends."""
-        return length_text(math.dist(path.position[-1].tolist(), self.target))
+        return report.with_micro_signs(length_text(math.dist(path.position[-1].tolist(), self.target)))
 
     def helps(self, result: Aimed) -> bool:
         """Whether the drives bring the part nearer to the target than it starts."""
@@ -67,6 +68,7 @@ class Search:
     def text(self, result: Aimed) -> str:
         """How near the drives bring the part."""
         found = f"After {result.paths} paths the part ends {length_text(result.distance)} from the target"
+        found = report.with_micro_signs(found)
         if result.reached:
             return f"{found}."
         if self.helps(result):
