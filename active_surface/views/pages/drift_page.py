@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from active_surface.studies.drifts import Drift, DriftMap, Fate
-from active_surface.studies.drifts.pictures import LOST, shades
+from active_surface.studies.drifts import LOST, Drift, DriftMap, Fate, shades
 from active_surface.views.pages.packed import packed
 from active_surface.views.pages.page_file import notes_of, rows_of, write_page
 from common import percent, quantity, unit_for
