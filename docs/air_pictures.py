@@ -102,7 +102,9 @@ class Bent(Film):
     """A film over asperities that follow the bent surface, whatever the part's law."""
 
     def layer(self, friction: Any) -> Any:
-        return super().layer(friction)._replace(bends=True)
+        layer = super().layer(friction)
+        means = layer.means + np.outer([0, 1, 0, 1], layer.means[0]) * layer.half**2 / 6  # from the middle again
+        return layer._replace(bends=True, means=means)
 
 
 class Flat(Film):

@@ -1,4 +1,4 @@
-"""The gap between a square face and a bent surface, with the film of air in it.
+"""The gap between a face and a bent surface, with the film of air in it.
 
 With H the second derivatives of the surface under the face, z roughnesses from its middle to that of the face, sigma
 the roughness and psi_i the functions of the pressure,
@@ -15,8 +15,8 @@ and the gap follows from them and from the load N, which asperities and film bea
 
 With its contents given the film is a stiff spring. Where it is stiffer than the asperities pull z is unique.
 
-Asperities that are not `bends` meet a flat surface. The gap then is uniform, offset + z sigma, and the bending surface
-moves its volume only: -r.H r/2 counts in <psi_i h> alone.
+Asperities that are not `bends` meet a flat surface at its mean height. The gap then is uniform, offset + z sigma, and
+the bending surface moves its volume only: -(r.H r - <r.H r>)/2 counts in <psi_i h> alone.
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ class Gap(Record):
     limit: float  # N, of friction while sliding
     air: float  # N, of the film
     slope: float  # N, by which both loads change with z
+    rise: float  # N, by which that of the asperities does
     slowing: float  # m/s^2, of the slip
     demand: float  # N, the friction that a part at rest needs
     normal: float  # N, on the part
@@ -87,7 +88,7 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
     g.verdict = Verdict.GOES_ON
     for _ in range(TURNS):
         if not (abs(z - g.at) <= TRUST and g.xx == g.at_xx and g.xy == g.at_xy and g.yy == g.at_yy):
-            _fill_asperities(layer, z, g)
+            fill_asperities(layer, z, g)
         _fill_film(layer, contents, z, g)
         off = z - g.at
         net, net_slope = g.net + off * (g.net_slope + 0.5 * off * g.net_bend), g.net_slope + off * g.net_bend
@@ -116,14 +117,20 @@ def fill_gap(layer: Layer, law: FrictionLaw, contents: FloatArray, load: float, 
         g.excess[i] += step * g.change[i]
     g.z, g.near = z + step, z + step - over
     g.load, g.air = net + step * net_slope, g.air + step * g.slope
-    g.slope += net_slope
+    g.slope, g.rise = g.slope + net_slope, net_slope
     if g.near > FARTHEST:
         g.verdict = Verdict.DETACHED
     g.width = layer.offset + g.z * layer.law.roughness
     if layer.bends:
         g.width -= layer.half * layer.half * (g.xx + g.yy) / 6
+    fill_limit(layer, law, off + step, g)
+
+
+@device_no_arrays
+def fill_limit(layer: Layer, law: FrictionLaw, ahead: float, g: Gap) -> None:
+    """Friction's limit at g.z, `ahead` [roughnesses] of where asperities were looked at, under g.load, into g.limit."""
     if layer.grips:
-        g.limit = g.borne + (off + step) * g.borne_slope
+        g.limit = g.borne + ahead * g.borne_slope
     elif g.z > layer.law.fold and law.pull_off < math.inf:
         g.limit = 0.0  # beyond pull-off, where the law ends and the same load comes again
     else:
@@ -177,6 +184,12 @@ def fill_flow(layer: Layer, g: Gap, rate: FloatArray) -> None:
 
 
 @device_no_arrays
+def drag_of(layer: Layer, gap: float) -> float:
+    """mu A/(h + 2 mfp) [N s/m], the force of the air against a slip over its velocity, at a mean gap [m]."""
+    return layer.viscosity * layer.area / (gap + 2.0 * layer.free_path)
+
+
+@device_no_arrays
 def stored(layer: Layer, g: Gap) -> float:
     """p_a A/2 sum a_i a_j <psi_i psi_j h> [J], what the film stores."""
     middle = layer.offset + g.z * layer.law.roughness
@@ -227,7 +240,7 @@ def _mean(layer: Layer, i: int, z: float, g: Gap) -> float:
 
 
 @device_no_arrays
-def _fill_asperities(layer: Layer, z: float, g: Gap) -> None:
+def fill_asperities(layer: Layer, z: float, g: Gap) -> None:
     """N_c and Q [N] at z, with derivatives by it, into `g`."""
     law = layer.law
     spread = spread_of(law, g.xx, g.xy, g.yy) if layer.bends else 0.0
@@ -245,7 +258,7 @@ def _fill_asperities(layer: Layer, z: float, g: Gap) -> None:
 @device_no_arrays
 def _load_at(layer: Layer, z: float, g: Gap) -> float:
     """N_c [N] at z."""
-    _fill_asperities(layer, z, g)
+    fill_asperities(layer, z, g)
     return float(g.net)
 
 
