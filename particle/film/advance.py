@@ -23,7 +23,7 @@ FIRST_TRY = 1e-6  # of a stroke
 
 
 @inlined
-def rest(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> int:
+def rest(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> int:
     """The part rests for a step, at most to where it leaves: SLIPS, DETACHES or NO_EVENT."""
     now: Now = memory.now[0]
     step, g = memory.step[0], memory.gap[0]
@@ -39,7 +39,7 @@ def rest(surface: Surface, request: Request, layer: Layer, face: Face | None, me
 
 
 @device_no_arrays
-def advance(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> int:
+def advance(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> int:
     """One step of about now.h [s] from memory.step[0].state, the rate of which is known; the event at its end."""
     now: Now = memory.now[0]
     step, last = memory.step[0], memory.gap[STAGES]
@@ -85,7 +85,7 @@ def advance(surface: Surface, request: Request, layer: Layer, face: Face | None,
 
 
 @inlined
-def _cross_fold(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> int:
+def _cross_fold(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> int:
     """Where the gap jumps, as the film is softer than the asperities pull: the part is beyond it; else work ends."""
     now: Now = memory.now[0]
     state, g, before = memory.step[0].state, memory.gap[STAGES], memory.gap[0].z
@@ -104,7 +104,7 @@ def _cross_fold(surface: Surface, request: Request, layer: Layer, face: Face | N
 
 
 @device_no_arrays
-def _is_over(surface: Surface, face: Face | None, memory: Memory, k: int) -> bool:
+def _is_over(surface: Surface, face: Face | tuple[()], memory: Memory, k: int) -> bool:
     """Whether contact, or flight, has ended at the k-th stage, from 1."""
     g, stage = memory.gap[k], memory.step[0].stages[k - 1]
     ended = g.verdict != Verdict.GOES_ON or is_off(g) != (memory.now[0].mode == Mode.FLYING)
@@ -112,7 +112,7 @@ def _is_over(surface: Surface, face: Face | None, memory: Memory, k: int) -> boo
 
 
 @inlined
-def _locate_end(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> None:
+def _locate_end(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> None:
     """Shorten the step tried to where contact or flight ends, just beyond it."""
     now: Now = memory.now[0]
     low, high = 0.0, now.h
@@ -127,7 +127,7 @@ def _locate_end(surface: Surface, request: Request, layer: Layer, face: Face | N
 
 
 @device_no_arrays
-def _event(surface: Surface, request: Request, face: Face | None, memory: Memory, g: Gap) -> int:
+def _event(surface: Surface, request: Request, face: Face | tuple[()], memory: Memory, g: Gap) -> int:
     """What happens where rest, contact or flight end, with the gap there."""
     now: Now = memory.now[0]
     state = memory.step[0].state
@@ -149,7 +149,7 @@ def _event(surface: Surface, request: Request, face: Face | None, memory: Memory
 
 
 @device_no_arrays
-def _look(request: Request, layer: Layer, face: Face | None, memory: Memory, share: float, h: float) -> float:
+def _look(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, share: float, h: float) -> float:
     """`leaves` a share of the step tried after its begin."""
     fill_within(face, memory, share, h, memory.step[0].probe)
     settle(request, layer, face, memory, memory.step[0].probe, memory.now[0].time + share * h, memory.gap[STAGES + 1])
@@ -157,7 +157,7 @@ def _look(request: Request, layer: Layer, face: Face | None, memory: Memory, sha
 
 
 @inlined
-def _leaves_at(request: Request, layer: Layer, face: Face | None, memory: Memory, h: float) -> float:
+def _leaves_at(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float) -> float:
     """The share of the step tried after which a part at rest leaves, just beyond it: secants (Illinois), halving."""
     low, below, high, above = 0.0, leaves(request, memory.gap[0]), 0.0, 0.0
     for k in range(1, LOOKS + 1):

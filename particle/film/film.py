@@ -147,13 +147,15 @@ def _square(contact: KogutEtsion, size: float) -> LocalContact:
 
 def _half_face(count: int, disc: bool) -> tuple[FloatArray, FloatArray]:
     """Points (n, 2) of half the square of side 2, or of half the disc of radius 1, and weights (n,), which make 1."""
-    x, w_x = np.polynomial.legendre.leggauss(count)
-    y, w_y = np.polynomial.legendre.leggauss(count // 2)
-    places = np.meshgrid(x, (y + 1) / 2, indexing="ij")
     if disc:
-        angle, r = np.meshgrid(np.pi * (np.arange(count) + 0.5) / count, np.sqrt((y + 1) / 2), indexing="ij")
-        places, w_x = (r * np.cos(angle), r * np.sin(angle)), np.full(count, 2 / count)
-    return np.column_stack([along.ravel() for along in places]), np.outer(w_x, w_y).ravel() / 4
+        s, w = np.polynomial.legendre.leggauss(count // 2)
+        angle, r = np.meshgrid(np.pi * np.arange(count) / count, np.sqrt((s + 1) / 2), indexing="ij")
+        return np.column_stack([(r * np.cos(angle)).ravel(), (r * np.sin(angle)).ravel()]), np.tile(
+            w / (2 * count), count
+        )
+    x, w = np.polynomial.legendre.leggauss(count)
+    places = np.meshgrid(x, x[count // 2 :], indexing="ij")
+    return np.column_stack([along.ravel() for along in places]), np.outer(w, w[count // 2 :]).ravel() / 2
 
 
 def _heights(places: FloatArray) -> FloatArray:

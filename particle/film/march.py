@@ -33,15 +33,15 @@ def march_film(
     surface: Surface,
     request: Request,
     layer: Layer,
-    face: Face | None,
+    face: Face | tuple[()],
     start: FloatArray,
     memory: Memory,
     record: PathRecord,
 ) -> tuple[PathRecord, FloatArray]:
     """The path from one request, into `record`, and the state at its rows (rows, STATE) or more.
 
-    face: of a part that has one.  start: (STATE,), with z = nan for a film at rest at the pressure around.  Where a cell is lacking the path ends, and
-    must begin anew when there is one.
+    face: of a part that has one; of a point ().  start: (STATE,), with z = nan for a film at rest at the pressure
+    around.  Where a cell is lacking the path ends, and must begin anew when there is one.
     """
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
@@ -81,7 +81,7 @@ def march_film(
             if now.verdict == Verdict.GOES_ON:
                 fill_row(request, layer, face, memory, now.mode, memory.row[0])
                 now.verdict = g.verdict
-            record, states = _write(record, states, memory)
+            record, states = _write(record, states, memory, step.state)
             if now.verdict != Verdict.GOES_ON:
                 break
         elif new_span:
@@ -97,9 +97,11 @@ def march_film(
             event = rest(surface, request, layer, face, memory)
             if event == EventKind.SLIPS:
                 fill_row(request, layer, face, memory, Mode.SLIDING, memory.row[0])
+                for k in range(STATE):
+                    step.probe[k] = step.state[k]
                 begins = begin_slip(surface, request, layer, face, memory)
                 if begins:
-                    record, states = _write(record, states, memory)
+                    record, states = _write(record, states, memory, step.probe)
                 if begins and not slips:
                     record = note(record, event, memory.row[0])
                 event = NO_EVENT
@@ -110,7 +112,7 @@ def march_film(
         fill_row(request, layer, face, memory, now.mode, memory.row[0])
         if event != NO_EVENT:
             record = note(record, event, memory.row[0])
-        record, states = _write(record, states, memory)
+        record, states = _write(record, states, memory, step.state)
         if counts.evaluations > MIN_EVALUATIONS + EVALUATIONS_PER_SPAN * counts.spans:
             now.verdict = Verdict.WORK_LIMIT
     verdict = now.verdict
@@ -121,8 +123,8 @@ def march_film(
 
 
 @device
-def _write(record: PathRecord, states: FloatArray, memory: Memory) -> tuple[PathRecord, FloatArray]:
-    """The record with the row memory.row[0], and the state at its rows."""
+def _write(record: PathRecord, states: FloatArray, memory: Memory, state: FloatArray) -> tuple[PathRecord, FloatArray]:
+    """The record with the row memory.row[0], and the state at its rows, the last of which is `state`."""
     record = write(record, memory.row[0])
     if len(states) < len(record.rows):
         longer = np.zeros((len(record.rows), STATE))
@@ -130,15 +132,15 @@ def _write(record: PathRecord, states: FloatArray, memory: Memory) -> tuple[Path
         states = longer
     place = record.lengths[0].rows - 1
     for k in range(STATE):
-        states[place, k] = memory.step[0].state[k]
+        states[place, k] = state[k]
     return record, states
 
 
 @device_no_arrays
-def _enter(surface: Surface, request: Request, face: Face | None, memory: Memory) -> tuple[int, float]:
+def _enter(surface: Surface, request: Request, face: Face | tuple[()], memory: Memory) -> tuple[int, float]:
     """Prepare for the part at the state's place from now on: a cell, NOWHERE or UNBUILT; when [s] the span ends."""
     state, time, local = memory.step[0].state, memory.now[0].time, memory.local
-    if face is None:
+    if len(face) == 0:
         allow_bridges(local, request.bridged[0], request.bridged[1])
         cell = enter(surface, local, state[X], state[Y], time, request.duration)
         return cell, local.frame[0].end
@@ -147,9 +149,9 @@ def _enter(surface: Surface, request: Request, face: Face | None, memory: Memory
 
 
 @device_no_arrays
-def _jumps(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> bool:
+def _jumps(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> bool:
     """Whether the surface's velocity under the part jumps as a span begins."""
-    if face is None:
+    if len(face) == 0:
         return _jumps_under_point(surface, request, memory)
     settle(request, layer, face, memory, memory.step[0].state, memory.now[0].time, memory.gap[0])  # sets the pose
     keep_carried(request.part, face, memory.body, memory.now[0].time)
@@ -168,7 +170,7 @@ def _jumps_under_point(surface: Surface, request: Request, memory: Memory) -> bo
 
 
 @device_no_arrays
-def _fill_film_at_rest(request: Request, layer: Layer, face: Face | None, memory: Memory) -> None:
+def _fill_film_at_rest(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> None:
     """The film at the pressure around, in the gap in which the asperities bear the load, into the state."""
     state, time, g = memory.step[0].state, memory.now[0].time, memory.gap[0]
     fill_load(request, face, memory, state, time, g)

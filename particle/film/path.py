@@ -40,7 +40,7 @@ def find_film_path(
         nonlocal states
         memory = new_memory(record, face, np.zeros(1, dtype=np.int64) if stop is None else stop)
         with seen(memory.now, request.until):
-            found, states = march_film(record, request, layer, face, start, memory, new_record())
+            found, states = march_film(record, request, layer, face or (), start, memory, new_record())
         return computed_of(found, memory)
 
     computed = with_cells(surface, path)
@@ -64,7 +64,7 @@ def find_film_path(
             piece = request._replace(mode=int(row["mode"]), begin=float(row["time"]), until=until)
             piece = piece._replace(first_step=until - piece.begin)
             memory.counts[0] = record.lengths[0] = 0
-            done, _ = march_film(surface.record, piece, layer, face, states[places[k]], memory, record)
+            done, _ = march_film(surface.record, piece, layer, face or (), states[places[k]], memory, record)
             found[k] = done.rows[done.lengths[0]["rows"] - 1]
         return found
 

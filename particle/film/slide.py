@@ -40,7 +40,7 @@ PLACES, SPEEDS = (X, Y, HEADING), (V_X, V_Y, SPIN)
 
 
 @inlined
-def slide(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> int:
+def slide(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> int:
     """The part slides or flies for a step, at most to its stop or to the end of contact or flight; the event there."""
     now: Now = memory.now[0]
     step, g = memory.step[0], memory.gap[0]
@@ -57,17 +57,17 @@ def slide(surface: Surface, request: Request, layer: Layer, face: Face | None, m
 
 
 @device_no_arrays
-def stopped_of(face: Face | None) -> tuple[float, float]:
+def stopped_of(face: Face | tuple[()]) -> tuple[float, float]:
     """How close a stop must be."""
-    if face is None:
+    if len(face) == 0:
         return STOPPED
     return FACE_STOPPED
 
 
 @device_no_arrays
-def _stop_ahead(request: Request, layer: Layer, face: Face | None, memory: Memory) -> Stop:
+def _stop_ahead(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> Stop:
     """The stop of a sliding part with forces as they are."""
-    if face is None:
+    if len(face) == 0:
         return _point_stop(request, layer, memory)
     state, g = memory.step[0].state, memory.gap[0]
     time = g.speed / g.slowing
@@ -87,7 +87,7 @@ def _point_stop(request: Request, layer: Layer, memory: Memory) -> Stop:
 
 
 @inlined
-def _stop(request: Request, layer: Layer, face: Face | None, memory: Memory, stop: Stop) -> int:
+def _stop(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, stop: Stop) -> int:
     """Move a part to its stop."""
     now: Now = memory.now[0]
     step, state, g = memory.step[0], memory.step[0].state, memory.gap[0]
@@ -108,7 +108,7 @@ def _stop(request: Request, layer: Layer, face: Face | None, memory: Memory, sto
 
 
 @inlined
-def begin_slip(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> bool:
+def begin_slip(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> bool:
     """Move a resting part that friction no longer holds over the first moment of its slip; False: it stays after all.
 
     Over that moment d the slip's rate goes from r_0 to r_1 along nearly the same e: it comes to (r_0 + r_1) d/2.
@@ -148,20 +148,20 @@ def begin_slip(surface: Surface, request: Request, layer: Layer, face: Face | No
 
 
 @device_no_arrays
-def _lost(request: Request, layer: Layer, face: Face | None, memory: Memory, g: Gap, way: float) -> float:
+def _lost(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, g: Gap, way: float) -> float:
     """What friction dissipates [J] over the first `way` [m] of a slip."""
-    if face is None:
+    if len(face) == 0:
         return g.limit * way
     return face_lost(request, layer, face, memory, g) * way
 
 
 @device_no_arrays
-def _slip_rate(request: Request, face: Face | None, memory: Memory, g: Gap, first: bool) -> float:
+def _slip_rate(request: Request, face: Face | tuple[()], memory: Memory, g: Gap, first: bool) -> float:
     """r [m/s^2] by which a part at rest begins to slip; the rates of (x, y, heading) over it into step.off (3,).
 
     first: whether this is where it leaves its rest.
     """
-    if face is None:
+    if len(face) == 0:
         return _point_slip_rate(request, memory, g)
     return face_slip_rate(request, face, memory, first)
 

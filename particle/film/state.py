@@ -41,10 +41,10 @@ FAR = 10.0  # roughnesses, of the gap at its nearest point: from there on the pa
 
 @device_no_arrays
 def settle(
-    request: Request, layer: Layer, face: Face | None, memory: Memory, state: FloatArray, time: float, g: Gap
+    request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, state: FloatArray, time: float, g: Gap
 ) -> None:
     """The gap at a state and time [s], looked for near state[Z], and the forces there, into `g`."""
-    if face is None:
+    if len(face) == 0:
         _place_point(request, layer, memory, state, time, g)
     else:
         place_face(request, layer, face, memory, state, time, g)
@@ -53,9 +53,9 @@ def settle(
 
 
 @device_no_arrays
-def fill_load(request: Request, face: Face | None, memory: Memory, state: FloatArray, time: float, g: Gap) -> None:
+def fill_load(request: Request, face: Face | tuple[()], memory: Memory, state: FloatArray, time: float, g: Gap) -> None:
     """The surface under the part, and its load, into `g`."""
-    if face is None:
+    if len(face) == 0:
         f = surface_at(memory.local, state[X], state[Y], time)
         g.xx, g.xy, g.yy, g.normal = f.w_xx, f.w_xy, f.w_yy, pull(f, state[V_X], state[V_Y], request.part).normal
     else:
@@ -82,7 +82,7 @@ def _place_point(
 def fill_rate(
     request: Request,
     layer: Layer,
-    face: Face | None,
+    face: Face | tuple[()],
     memory: Memory,
     state: FloatArray,
     time: float,
@@ -96,7 +96,7 @@ def fill_rate(
     """
     for i in (X, Y, V_X, V_Y, HEADING, SPIN, WORK, LOSS):
         rate[i] = 0.0
-    if face is None:
+    if len(face) == 0:
         _fill_point_rate(request, layer, memory, state, time, mode, g, rate)
     else:
         place_face(request, layer, face, memory, state, time, g)
@@ -141,9 +141,9 @@ def is_off(g: Gap) -> bool:
 
 
 @device_no_arrays
-def fill_need(request: Request, face: Face | None, memory: Memory, g: Gap) -> None:
+def fill_need(request: Request, face: Face | tuple[()], memory: Memory, g: Gap) -> None:
     """What a part at rest needs into g.demand, after `fill_rate`, which leaves that of a face out."""
-    if face is None:
+    if len(face) == 0:
         return
     weigh(request, face, memory, g)
 
@@ -158,12 +158,12 @@ def leaves(request: Request, g: Gap) -> float:
 
 
 @device_no_arrays
-def fill_row(request: Request, layer: Layer, face: Face | None, memory: Memory, mode: int, row: Row) -> None:
+def fill_row(request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, mode: int, row: Row) -> None:
     """The row of memory.step[0].state into `row`."""
     state, now, g = memory.step[0].state, memory.now[0], memory.gap[0]
     row.time, row.x, row.y, row.v_x, row.v_y, row.mode = now.time, state[X], state[Y], state[V_X], state[V_Y], mode
     row.work, row.dissipated = state[WORK], state[LOSS]
-    if face is None:
+    if len(face) == 0:
         _fill_point_row(request, layer, memory, mode, row)
     else:
         settle(request, layer, face, memory, state, now.time, g)
@@ -186,10 +186,10 @@ def _fill_point_row(request: Request, layer: Layer, memory: Memory, mode: int, r
 
 
 @device_no_arrays
-def energy_now(request: Request, face: Face | None, memory: Memory) -> float:
+def energy_now(request: Request, face: Face | tuple[()], memory: Memory) -> float:
     """Kinetic and potential energy [J] of the part at memory.step[0].state."""
     state, time = memory.step[0].state, memory.now[0].time
-    if face is None:
+    if len(face) == 0:
         return _point_energy(request, memory, state, time)
     return face_energy(request, face, memory, state, time)
 
@@ -204,16 +204,16 @@ def _point_energy(request: Request, memory: Memory, state: FloatArray, time: flo
 
 
 @device_no_arrays
-def within(face: Face | None, memory: Memory, state: FloatArray) -> bool:
+def within(face: Face | tuple[()], memory: Memory, state: FloatArray) -> bool:
     """Whether the part is where the cells' polynomials hold."""
-    if face is None:
+    if len(face) == 0:
         return within_cell(memory.local, state[X], state[Y])
     return within_cells(memory.local, memory.body.slots, face, state[X], state[Y], state[HEADING])
 
 
 @device_no_arrays
-def rim_of(surface: Surface, face: Face | None, memory: Memory, state: FloatArray) -> float:
+def rim_of(surface: Surface, face: Face | tuple[()], memory: Memory, state: FloatArray) -> float:
     """How far [m] the part is from the rim at least, negative beyond it."""
-    if face is None:
+    if len(face) == 0:
         return gap_at(surface, memory.local, state[X], state[Y])
     return rim_of_face(surface, face, memory, state)

@@ -40,7 +40,7 @@ TO = np.ascontiguousarray(_eigen[1][:, _half] * np.where(_eigen[0][_half].imag >
 
 
 @device_no_arrays
-def begin_step(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory) -> None:
+def begin_step(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> None:
     """The rate at the state, and by how much it changes with it, into memory.step[0]."""
     step, now, first, last = memory.step[0], memory.now[0], first_of(memory), last_of(face, memory)
     state, nudged, g = step.state, step.end, memory.gap[0]
@@ -68,23 +68,23 @@ def first_of(memory: Memory) -> int:
 
 
 @device_no_arrays
-def last_of(face: Face | None, memory: Memory) -> int:
+def last_of(face: Face | tuple[()], memory: Memory) -> int:
     """The first number after those of a state that move."""
-    if face is None:
+    if len(face) == 0:
         return HEADING
     return HEADING if memory.now[0].mode == Mode.RESTING else SOLVED
 
 
 @device_no_arrays
-def arm_of(face: Face | None) -> float:
+def arm_of(face: Face | tuple[()]) -> float:
     """m, by which a turn counts as a distance."""
-    if face is None:
+    if len(face) == 0:
         return 1.0
     return face.arm
 
 
 @device_no_arrays
-def attempt(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory, h: float) -> bool:
+def attempt(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float) -> bool:
     """Try a step of h [s], after `begin_step`: its stages and its end; False where they are not found."""
     step, now, first, last = memory.step[0], memory.now[0], first_of(memory), last_of(face, memory)
     state, stages, rates, time = step.state, step.stages, step.rates, now.time
@@ -126,7 +126,9 @@ def attempt(surface: Surface, request: Request, layer: Layer, face: Face | None,
 
 
 @device_no_arrays
-def _newton(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory, h: float) -> float:
+def _newton(
+    surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float
+) -> float:
     """One of Newton's steps of the stages; its largest change as a distance [m]."""
     step, m, ahead, first, last = memory.step[0], memory.system, memory.ahead, first_of(memory), last_of(face, memory)
     state, stages, n = step.state, step.stages, last - first
@@ -185,7 +187,7 @@ def _eliminate(m: Any, out: Any) -> bool:
 
 
 @device_no_arrays
-def _unit(surface: Surface, request: Request, layer: Layer, face: Face | None, i: int) -> float:
+def _unit(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], i: int) -> float:
     """What an error of a number of the state counts as a distance [m] over it.
 
     A velocity counts as what it moves the part by in the shortest stroke, a roughness of gap as a 50th of the surface's
@@ -194,7 +196,7 @@ def _unit(surface: Surface, request: Request, layer: Layer, face: Face | None, i
     if i >= CONTENTS and i < HEADING:
         return surface.size / (CONTENT * layer.law.roughness)
     unit = arm_of(face) if i >= HEADING else 1.0
-    return request.stroke_time * unit if i == V_X or i == V_Y or i == SPIN else unit
+    return request.stroke_time * unit if i in (V_X, V_Y, SPIN) else unit
 
 
 @device_no_arrays
@@ -231,7 +233,9 @@ def _finish(layer: Layer, memory: Memory, h: float, first: int, last: int) -> No
 
 
 @device_no_arrays
-def error_of(surface: Surface, request: Request, layer: Layer, face: Face | None, memory: Memory, h: float) -> float:
+def error_of(
+    surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float
+) -> float:
     """The error of the step tried as a distance [m]."""
     step, first = memory.step[0], first_of(memory)
     m, n = step.system, last_of(face, memory) - first
@@ -251,7 +255,7 @@ def error_of(surface: Surface, request: Request, layer: Layer, face: Face | None
 
 
 @device_no_arrays
-def fill_within(face: Face | None, memory: Memory, share: float, h: float, out: FloatArray) -> None:
+def fill_within(face: Face | tuple[()], memory: Memory, share: float, h: float, out: FloatArray) -> None:
     """The state a share of the last step of h [s] after its begin into `out`, ledgers excluded."""
     step, first = memory.step[0], first_of(memory)
     for i in range(STATE):
@@ -264,7 +268,7 @@ def fill_within(face: Face | None, memory: Memory, share: float, h: float, out: 
 
 
 @device_no_arrays
-def take_step(face: Face | None, memory: Memory, h: float) -> None:
+def take_step(face: Face | tuple[()], memory: Memory, h: float) -> None:
     """Make the end of a step of h [s] the state, and its rate the guess for the next."""
     step, first = memory.step[0], first_of(memory)
     for i in range(STATE):
