@@ -16,7 +16,7 @@ from particle.jit import device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface
 
-ACROSS = 1e-6  # of a stroke: the most over which a film stays as it is where the gap jumps
+ACROSS = 1e-5  # of a stroke: the most over which a film stays as it is where the gap jumps
 LOOKS = 6  # moments of a step at rest that are looked at
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-12
 FIRST_TRY = 1e-6  # of a stroke

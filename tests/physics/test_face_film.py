@@ -44,7 +44,7 @@ def asperities(path):
 def shaken(load=1.5e-6):
     """A platform that shakes up and down by a load [N], and sways so that a part slips."""
     stroke = 0.5e-3
-    sway = {"x": Drive(4e-6, 700.0, cycle="sine"), "y": Drive(2e-6, 900.0, cycle="sine")}
+    sway = {"x": Drive(2e-6, 700.0, cycle="sine"), "y": Drive(1e-6, 900.0, cycle="sine")}
     return platform_surface(z=Drive(load / MASS / 5.7735027 * stroke**2, 0.5 / stroke), size=1e-5, **sway)
 
 
@@ -55,7 +55,7 @@ def plate(side=1.0, stroke=8e-6):
     return driven([Drive(stroke, 2e3, cycle="up-down")], [shape], size=1e-3)
 
 
-@pytest.mark.parametrize(("law", "pressure"), [(TABLE_1, "uniform"), (COULOMB, "linear")], ids=["rough", "coulomb"])
+@pytest.mark.parametrize(("law", "pressure"), [(KogutEtsion.paper(), "uniform"), (COULOMB, "linear")])
 def test_a_square_that_does_not_turn_goes_as_a_point_on_the_same_film(law, pressure):
     """On a platform friction has no torque, whatever the pressure."""
     start = {"position": (0.0, 0.0), "velocity": (0.02, 0.01)}
@@ -64,9 +64,10 @@ def test_a_square_that_does_not_turn_goes_as_a_point_on_the_same_film(law, press
     of_point, of_face = (simulate(shaken(), part, law, 4e-3, tolerance=1e-11) for part in (point, face))
     times = np.linspace(0.0, 4e-3, 801)
     one, other = of_point.at(times), of_face.at(times)
-    assert len(of_face.events) == len(of_point.events) > 5
+    assert [event.kind for event in of_face.events] == [event.kind for event in of_point.events]
+    assert of_point.path_length > 1e-5
     assert other.position == pytest.approx(one.position, abs=1e-6 * of_point.path_length)
-    assert asperities(other) == pytest.approx(asperities(one), abs=1e-6 * np.ptp(asperities(one)))
+    assert asperities(other) == pytest.approx(asperities(one), abs=1e-5 * np.ptp(asperities(one)))
     assert of_face.energy.dissipated[-1] == pytest.approx(of_point.energy.dissipated[-1], rel=1e-6)
     assert of_face.film_energy.heat[-1] == pytest.approx(of_point.film_energy.heat[-1], rel=1e-6)
     assert np.abs(of_face.heading).max() < 1e-12
@@ -183,7 +184,7 @@ def test_a_linear_pressure_tips_where_an_edge_would_let_go_and_a_uniform_one_goe
 
 
 def test_where_air_is_too_thin_to_hold_a_face_it_comes_off():
-    surface = platform_surface(z=Drive(4e-6, 1e3), size=1e-5)
+    surface = platform_surface(z=Drive(60e-6, 1e3), size=1e-5)
     thin = body(position=(0.0, 0.0), film=Air(pressure=100.0, bow=1e-6))
     free, found = (simulate(surface, part, COULOMB, 3e-3) for part in (replace(thin, film=None, density=np.nan), thin))
     assert found.outcome is free.outcome is Outcome.DETACHED

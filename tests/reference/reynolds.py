@@ -1,4 +1,4 @@
-"""Air under a square or rectangular face, by collocation in two dimensions: the compressible Reynolds equation of a rarefied gas.
+"""Air under a rectangular face, by collocation in two dimensions: the compressible Reynolds equation of a rarefied gas.
 
 With the pressure p and the gap h = h0 - kappa/2 (x^2 + y^2 - (a^2 + b^2)/12), whose mean over the sides a, b is h0,
 
