@@ -16,8 +16,9 @@ from particle.jit import device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface
 
-ACROSS = 1e-5  # of a stroke: the most over which a film stays as it is where the gap jumps
+ACROSS = 1e-6  # of a stroke: the most over which a film stays as it is where the gap jumps
 LOOKS = 6  # moments of a step at rest that are looked at
+HELD = 1e-6  # of its limit, by which friction still holds where a step ends at a jump of the gap, not at a slip
 MAX_GROWTH, SAFETY, MIN_STEP = 8.0, 0.9, 1e-12
 FIRST_TRY = 1e-6  # of a stroke
 
@@ -81,7 +82,14 @@ def advance(surface: Surface, request: Request, layer: Layer, face: Face | tuple
     now.time = now.span_end if h == remaining else now.time + h
     now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
     step.state[STORED] = stored(layer, last)
-    return _event(surface, request, face, memory, last) if ends else NO_EVENT
+    if not ends:
+        return NO_EVENT
+    event = _event(surface, request, face, memory, last)
+    if event == EventKind.SLIPS:
+        fill_need(request, face, memory, last)
+        if leaves(request, last) < -HELD:
+            return NO_EVENT
+    return event
 
 
 @inlined

@@ -81,7 +81,7 @@ def test_strong_strokes_move_the_gap_as_in_two_dimensions(over, load, gap):
     ("bend", "local", "off"), [(-60.0, True, 1), (25.0, True, 1), (-1.0, False, 5), (5.0, False, 20)]
 )
 def test_a_surface_that_bends_pumps_the_film_as_in_two_dimensions(bend, local, off):
-    """Asperities that are not local have the load of the mean gap; their film's gap is uniform here, and bends there."""
+    """Asperities that are not local have the load of the mean gap; the gap is uniform here, bent there."""
     surface = driven([Drive(1.0, 0.5 / STROKE)], [[[0, 0, bend / 2], [0, 0, 0], [bend / 2, 0, 0]]], size=1e-3)
     times = np.linspace(0.0, 2 * STROKE, 41)
     law = LocalContact(TABLE_1, SIZE) if local else TABLE_1
