@@ -43,6 +43,7 @@ from particle.surface import Surface
 from particle.types import FloatArray
 
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
+LIFTS = 1e-6  # of the pull-off force: what moments lift an edge by counts from there on
 
 
 @device_no_arrays
@@ -78,7 +79,8 @@ def _share(request: Request, layer: Layer, face: Face, memory: Memory, state: Fl
     g.normal = b.at = b.load[0]
     b.limit, b.by_borne, b.drag = g.limit, _by_borne(layer, part.law, g), drag_of(layer, g.width)
     b.by_load = g.borne_slope / g.slope if layer.grips else b.by_borne * g.rise / g.slope
-    if g.verdict == Verdict.GOES_ON and face.linear and least_pressure(face, b) - g.air < -part.law.pull_off:
+    lifted = b.load[0] - least_pressure(face, b)  # by moments; without them it comes off as a whole
+    if g.verdict == Verdict.GOES_ON and lifted > LIFTS * part.law.pull_off and g.load - lifted < -part.law.pull_off:
         g.verdict = Verdict.TIPPED
 
 
