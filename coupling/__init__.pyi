@@ -34,6 +34,7 @@ from .progress import (
     Progress as Progress,
     ProgressCallback as ProgressCallback,
     silent as silent,
+    doing as doing,
     no_progress as no_progress,
 )
 from .outlook import (

@@ -1,6 +1,6 @@
 """Progress: stages, or many pieces of one stage, on a terminal once the work has taken two seconds.
 
-Where there is no terminal, as in a log, a line twice a minute says what is done and what is left.
+Where there is no terminal, as in a log, a line after ten seconds and then twice a minute says what is done and left.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ _now = time.monotonic  # s
 
 PATIENCE = 2.0  # s of silence on a terminal
 PERIOD = 30.0  # s between lines elsewhere
+FIRST = 10.0  # s before the first of them, at most
 COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
 
 
@@ -105,7 +106,7 @@ class Bar:
         if first is None:
             self._bar.reset(self._id, completed=done, total=of)
         rate = f", {self.task.speed:.0f}/s" if self.task.speed else ""
-        self._bar.update(self._id, completed=done)
+        self._bar.update(self._id, completed=done, total=of)
         self.show(f"{self._stage}; writing all" if done == of else self._stage + rate)
 
     def _line(self) -> str:
@@ -128,7 +129,9 @@ class Bar:
 
     def _write_lines(self) -> None:
         with suppress(OSError, ValueError):  # of a stream that nobody reads any more
-            while not self._ended.wait(PERIOD) and sys.stderr:
+            wait = min(FIRST, PERIOD)
+            while not self._ended.wait(wait) and sys.stderr:
+                wait = PERIOD
                 print(f"{_clock(_now() - self._since)}  {self._line()}", file=sys.stderr, flush=True)
 
     def _announce(self) -> None:

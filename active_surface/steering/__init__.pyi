@@ -13,4 +13,5 @@ from .read import read_heading as read_heading, read_measured as read_measured
 from .read import read_place as read_place, read_settings as read_settings
 from . import report as report
 from .objectives import prepared as prepared
+from .probes import Unmoved as Unmoved
 from .settings import AimTables as AimTables

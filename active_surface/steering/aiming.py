@@ -17,14 +17,18 @@ import numpy as np
 
 from active_surface.steering.legs import Approach, Leg, scheduled
 from active_surface.steering.objectives import prepared
-from active_surface.steering.paths import Paths, path_of, settled
+from active_surface.steering.paths import Paths, affordable, path_of, settled
 from active_surface.steering.picture import draw_aim, draw_plan
+from active_surface.steering.probes import Unmoved
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import REPORTED, Scatter, deviations, draws
 from active_surface.steering.task import Route, Task, end_of
-from coupling import ProgressCallback, check_free, no_progress, run_case, warnings
+from coupling import ProgressCallback, check_free, doing, no_progress, run_case, warnings
 from coupling.case import write_case
 from particle import SurfaceMotion, Trajectory, interruptible, unbroken
+
+SCATTERED, FEW = 100, 25  # disturbed runs, and how many there are at least where runs are long
+SCATTERED_CYCLES = 20_000  # in all of them
 
 Kind = TypeVar("Kind", Aimed, Planned)
 
@@ -136,7 +140,7 @@ def aim_over(
         return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
     approach = Approach(surface, task, threads, count)
-    return _found(approach.run, result, file, surface, threads)
+    return _found(approach.run, result, file, surface, threads, tell)
 
 
 def plan_over(
@@ -148,7 +152,7 @@ def plan_over(
 ) -> Planned:
     """The same as `plan` over an existing surface; writes a case file at most, before it looks at the scatter."""
     work = _Plan(surface, route, threads, tell)
-    return _found(work.run, lambda: work.planned, file, surface, threads)
+    return _found(work.run, lambda: work.planned, file, surface, threads, tell)
 
 
 class _Plan:
@@ -168,7 +172,8 @@ class _Plan:
                     return
                 place = end_of(done.trajectory)
                 if math.dist(place, target) <= route.settings.tolerance:  # the part rests there already
-                    self.planned = replace(done, arrivals=(*done.arrivals, done.arrivals[-1]), tried=done.tried + 1)
+                    arrivals, stops = (*done.arrivals, done.arrivals[-1]), (*done.stops, ())
+                    self.planned = replace(done, arrivals=arrivals, stops=stops, tried=done.tried + 1)
                     continue
             try:
                 task = route.leg(number, place)
@@ -180,6 +185,10 @@ class _Plan:
             approach = Approach(self._surface, task, self._threads, tell, joined=True)
             try:
                 approach.run()
+            except Unmoved as error:
+                if self.planned is None:
+                    raise
+                self.planned = replace(self.planned, failure=f"leg {number}: {error}.")
             finally:
                 with unbroken():
                     self._join(approach)
@@ -189,6 +198,7 @@ class _Plan:
         done, way = self.planned, approach.best
         arrivals, tried, paths = (done.arrivals, done.tried, done.paths) if done else ((), 0, 0)
         paths += approach.paths
+        stops = done.stops if done else ()
         if way is None:
             self.planned = done and replace(done, paths=paths)
             return
@@ -204,6 +214,7 @@ class _Plan:
             case=case,
             trajectory=path,
             arrivals=arrivals if failure else (*arrivals, end),
+            stops=(*stops, way.stops),
             tried=tried + 1,
             paths=paths,
             failure=failure,
@@ -230,6 +241,7 @@ def _found(
     file: Path | None,
     surface: SurfaceMotion,
     threads: int | None,
+    tell: ProgressCallback,
 ) -> Kind:
     """The result of a search, with its case file, if any, and its scatter; after Ctrl-C the best so far, without.
 
@@ -247,7 +259,11 @@ def _found(
             result = replace(result, interrupted=interrupted)
             if file is not None:
                 result = replace(result, files=(write_case(result.case, file, result.head),))
-        return result if interrupted else replace(result, scatter=_scatter(result, surface, threads))
+        if interrupted:
+            return result
+        tell(result.paths, result.paths)
+        doing("paths; runs with disturbances")
+        return replace(result, scatter=_scatter(result, surface, threads))
     except KeyboardInterrupt:  # the result so far stays
         if result is None:
             raise
@@ -257,7 +273,8 @@ def _found(
 def _scatter(result: SteeringResult, surface: SurfaceMotion, threads: int | None) -> Scatter:
     """The ends of disturbed runs of a case with the best drives, and how far off the last target they are."""
     case, settings, paths = result.case, result.settings, Paths(result.case, surface, threads)
-    ways = draws(settings.scatter, deviations(case, settings.disturbances), settings.seed, REPORTED)
+    count = settings.scatter or affordable(case, case.run.duration, SCATTERED_CYCLES, FEW, SCATTERED)
+    ways = draws(count, deviations(case, settings.disturbances), settings.seed, REPORTED)
     trajectories = paths.of([(case.actuators, way) for way in ways])
     ends = np.array([path.position[-1] for path in trajectories])
     lost = np.array([path.time[-1] < case.run.duration for path in trajectories])

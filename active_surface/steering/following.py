@@ -110,11 +110,10 @@ def follow_plan(
     failure = ""
     while (progress := progress_of(route, measured, attempts)).way_point < len(route.through):
         try:
-            leg = route.leg(progress.way_point, progress.place, len(measured))
+            result = aim_over(surface, route.leg(progress.way_point, progress.place, len(measured)), threads, tell)
         except ValueError as error:
             failure = f"leg {len(measured)}: {error}"
             break
-        result = aim_over(surface, leg, threads, tell)
         if result.interrupted:  # no device is driven after Ctrl-C
             failure = f"leg {len(measured)}: interrupted"
             break

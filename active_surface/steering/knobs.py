@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,22 +12,24 @@ import numpy as np
 from active_surface.arrays import FloatArray, IntArray
 from active_surface.parameter import Parameter
 from active_surface.steering.settings import Settings
-from coupling.case import ActuatorCase, Case, find_field
+from coupling.case import ActuatorCase, Case, find_field, groups_of
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
 FEW_CYCLES = 1, 3  # over more of them the end point is less smooth
 AT_BOUND = 1e-3  # of a knob's range: a value so near to its bound stands at it
+KEYS = ("frequency", "stroke", "delay", "cycles")
+SHARED = ("frequency", "cycles")  # by all in a search that has them together
 DIGITS = {"frequency": 6, "stroke": 12, "delay": 12}  # decimals in SI units, as many as a file shows
 
 
 class Knob(Parameter):
-    """A number of an actuator's drive between two bounds; cycles are whole, and varied as numbers below `high` + 1."""
+    """A number of one or more actuators' drives between two bounds; cycles are whole, and vary below `high` + 1."""
 
     @property
-    def actuator(self) -> int:
-        """The number of the actuator."""
-        return int(self.field.locations[0][1])
+    def actuators(self) -> tuple[int, ...]:
+        """The numbers of the actuators that have it."""
+        return tuple(int(location[1]) for location in self.field.locations)
 
     @property
     def key(self) -> str:
@@ -52,24 +55,39 @@ class Stop(NamedTuple):
 
 
 class Knobs:
-    """All knobs of the actuators that take part.
+    """All knobs of the actuators that take part, in groups that move alike.
 
-    The others are at rest; with `around` they keep the drives of the case, which must end.
+    The others are at rest; with `around` each by itself varies about the drives of the case, which must end, and all
+    others keep theirs. With `together` all have one frequency and one number of cycles.
     """
 
     def __init__(
-        self, case: Case, settings: Settings, movers: tuple[int, ...], around: bool = False, wide: bool = False
+        self,
+        case: Case,
+        settings: Settings,
+        movers: tuple[int, ...],
+        around: bool = False,
+        wide: bool = False,
+        together: bool = False,
     ) -> None:
         """wide: without bounds of cycles in the settings, an actuator may have as many as in the case."""
         self.still = tuple(one if around or k in movers else at_rest(one) for k, one in enumerate(case.actuators))
         self.case, self.around = case, around
-        self._fixed: dict[int, dict[str, float]] = {}
+        lines = groups_of(case, "each" if around else settings.groups).values()
+        self.groups = [group for line in lines if (group := tuple(k for k in line if k in movers))]
+        self._fixed: dict[int, dict[str, float]] = {k: {} for k in movers}
         self.knobs: list[Knob] = []
-        for k in movers:
-            bounds = _bounds(case.actuators[k], settings, case.run.duration, wide or around)
-            self._fixed[k] = {key: low for key, (low, high) in bounds.items() if low == high}
-            free = {key: ends for key, ends in bounds.items() if ends[0] < ends[1]}
-            self.knobs += [Knob(find_field(case, None, f"actuators.{k}.{key}"), *free[key]) for key in free]
+        bounds = {
+            k: _bounds(case.actuators[k], settings, case.run.duration, wide or around or together) for k in movers
+        }
+        apart = [key for key in KEYS if not (together and key in SHARED)]
+        for group, keys in [(movers, SHARED)] * together + [(group, apart) for group in self.groups]:
+            for key in keys:
+                low, high = _common(key, [bounds[k][key] for k in group])
+                if low < high:
+                    self.knobs.append(_knob(case, group, key, low, high))
+                else:
+                    self._fixed |= {k: self._fixed[k] | {key: low} for k in group}
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
@@ -88,7 +106,7 @@ class Knobs:
         for k, fixed in self._fixed.items():
             if any(getattr(ended[k], key) != value for key, value in fixed.items()):
                 return None
-        values = [float(getattr(ended[knob.actuator], knob.key) or 0.0) for knob in self.knobs]
+        values = [float(getattr(ended[knob.actuators[0]], knob.key) or 0.0) for knob in self.knobs]
         inside = all(knob.low <= value <= knob.high for knob, value in zip(self.knobs, values, strict=True))
         return np.array(values) if inside else None
 
@@ -96,9 +114,9 @@ class Knobs:
         """All actuators with these values (n,) of the knobs; drives end within the case's duration where they can."""
         tables = {k: dict(fixed) for k, fixed in self._fixed.items()}
         for knob, value in zip(self.knobs, values.tolist(), strict=True):
-            tables[knob.actuator][knob.key] = (
-                round(value, DIGITS[knob.key]) if knob.smooth else min(math.floor(value), knob.high)
-            )
+            value = round(value, DIGITS[knob.key]) if knob.smooth else min(math.floor(value), knob.high)
+            for k in knob.actuators:
+                tables[k][knob.key] = value
         actuators = list(self.still)
         for k, keys in tables.items():
             fit = _fitting(keys["frequency"], actuators[k].dwell, self.case.run.duration - keys["delay"])
@@ -116,6 +134,19 @@ class Knobs:
             elif value <= knob.low + room and (knob.key == "frequency" or (knob.key == "stroke" and knob.low < 0)):
                 ends.append(Stop(knob, False))
         return tuple(ends)
+
+
+def _knob(case: Case, group: tuple[int, ...], key: str, low: float, high: float) -> Knob:
+    """The knob of a group, whose path names all of its actuators."""
+    fields = [find_field(case, None, f"actuators.{k}.{key}") for k in group]
+    path = f"actuators.{','.join(map(str, group))}.{key}"
+    return Knob(replace(fields[0], path=path, locations=tuple(one.locations[0] for one in fields)), low, high)
+
+
+def _common(key: str, bounds: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Bounds for a group: strokes that each of them may have, and of all else what one of them may."""
+    lows, highs = zip(*bounds, strict=True)
+    return (max(lows), min(highs)) if key == "stroke" else (min(lows), max(highs))
 
 
 def is_schedulable(actuator: ActuatorCase) -> bool:
@@ -155,7 +186,7 @@ def _bounds(
     frequency = settings.frequency or (SLOWEST * own, FASTEST * own)
     stroke = actuator.stroke or 0.0
     max_cycles = max(1, math.floor(frequency[1] * duration))
-    largest = max(FEW_CYCLES[1], _ended(actuator, duration).cycles or 0) if wide else FEW_CYCLES[1]
+    largest = max(FEW_CYCLES[1], actuator.cycles or max_cycles) if wide else FEW_CYCLES[1]
     low, high = settings.cycles or (FEW_CYCLES[0], largest)
     return {
         "frequency": frequency,

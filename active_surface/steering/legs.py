@@ -1,8 +1,9 @@
 """Legs: the way to a target in as few of them as possible, and the schedule of legs that follow each other.
 
-A short leg takes few paths to find. If it misses, another starts where the part rests, nearer to the target. As a last
-resort one leg takes the whole duration. Where the case's own drives end near the target, their neighbourhood is
-searched before all this.
+Where the case's own drives end near the target, their neighbourhood is searched. Otherwise probes tell which actuators
+move the part towards it, and drives with one frequency are sought around the best of them, in a time that suffices. If
+this leg misses, another starts where the part rests. Then each actuator gets a frequency of its own: a short leg takes
+few paths to find, and as a last resort one leg takes the whole duration.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import Knobs, Stop, at_rest, is_schedulable, own_drives, shortest
-from active_surface.steering.paths import Paths, cost, driven, path_of, settled
+from active_surface.steering.paths import Paths, affordable, cost, driven, path_of, settled
+from active_surface.steering.probes import LEAST, MAX_PROBES, Probes, Unmoved
 from active_surface.steering.search import Search
 from active_surface.steering.task import Task
-from coupling import ProgressCallback, build_drive
+from common import quantity
+from coupling import ProgressCallback, answers_drives, build_drive, doing
 from coupling.case import ActuatorCase, Case, SegmentCase, amplitude
 from particle import SurfaceMotion, Trajectory, unbroken
 
@@ -25,6 +29,11 @@ STEP: Final = 1e-6  # s, of which times of legs are multiples
 SHORTEST: Final = 1e-9  # s: shorter waits are left out
 DIGITS: Final = 12  # decimals of times in s, as many as a file shows
 MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
+MAX_CYCLES: Final = 200_000  # in all paths, where a task does not say how many these are, but for LEAST_PATHS
+LEAST_PATHS: Final = 400
+LEGS, MAX_PATHS_TOGETHER = 8, 100  # with one frequency, and for each
+PROBED: Final = 0.25  # of all paths, which probes may take where the case's own drives are not stuck
+LONGEST: Final = 20.0  # times the case's duration, that legs last where it is too short
 MAX_PATHS_AROUND: Final = 1000  # around the case's own drives
 ROBUST_AROUND: Final = 0.25  # of all paths, of a robust search there
 NEAR: Final = 0.5  # of the distance at the start: own drives that leave less are searched around
@@ -71,26 +80,66 @@ class Approach:
     ) -> None:
         """tell: is called with the number of paths so far and its maximum.  joined: other legs follow in a schedule."""
         self._surface, self._task, self._threads, self._tell, self._joined = surface, task, threads, tell, joined
-        self._horizon, self._searches = task.case.run.duration, 0
+        self._own = self._horizon = task.case.run.duration  # s; legs may take longer
+        self._searches = 0
+        self._moves: bool | None = None  # whether the case's own drives move the part; None: beyond bounds, not tried
         self._under_way: Callable[[], Way | None] = lambda: None  # the way of the current search
         self.best: Way | None = None
         self.paths = 0  # followed, without those of the current search
 
     def run(self) -> None:
-        """Search around the case's own drives, then leg by leg, then over the whole duration, until one is enough."""
-        task, max_paths, robust = self._task, self._task.settings.max_paths, self._task.settings.is_robust
+        """Search around the case's own drives, from probes, leg by leg and over the whole time, until one is enough.
+
+        Raises Unmoved where no drives move the part.
+        """
+        max_paths, robust = self._max_paths, self._task.settings.is_robust
         if (max_paths > 1 or not robust) and self._follow_own() and max_paths > 1 and not self.reached:
-            self._search(task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
-        if not robust and not self.reached and FIRST * self._horizon >= _min_duration(task):
-            chain = self._search(task.within(FIRST * self._horizon), None, MAX_PATHS[0])
-            for at_most in MAX_PATHS[1:]:
-                if self.reached or chain is None or (following := self._next(chain)) is None:
-                    break
-                way = self._search(following, chain, at_most)
-                if way and way.cost <= max(NEARER * chain.cost, task.settings.tolerance):
-                    chain = way
+            self._search(self._task, None, int(ROBUST_AROUND * max_paths) if robust else MAX_PATHS_AROUND, around=True)
+        if not self.reached:  # disturbances of several legs add up
+            self._chain([int(ROBUST_AROUND * max_paths)] if robust else LEGS * [MAX_PATHS_TOGETHER], together=True)
+        if not robust and not self.reached and FIRST * self._horizon >= _min_duration(self._task):
+            self._chain(MAX_PATHS)
         if not self.reached:
-            self._search(task, None, max_paths, wide=True)
+            self._search(self._task, None, max_paths, wide=True)
+
+    def _chain(self, max_paths: Sequence[int], together: bool = False) -> None:
+        """Search leg by leg, each from where the part rests, as long as they lead nearer to the target."""
+        chain, task = None, None if together else self._task.within(FIRST * self._horizon)
+        for at_most in max_paths:
+            following = (task or self._task) if chain is None else self._next(chain)
+            if self.reached or following is None:
+                break
+            way = self._probed(following, chain, at_most) if together else self._search(following, chain, at_most)
+            if chain is not None and (way is None or way.cost > max(NEARER * chain.cost, following.settings.tolerance)):
+                continue
+            if way is None:
+                break
+            chain = way
+
+    def _probed(self, task: Task, chain: Way | None, at_most: int) -> Way | None:
+        """Search around the best probe of a leg, in a longer time where the leg takes that."""
+        if (1.0 if chain or self._moves is False else PROBED) * (self._max_paths - self.paths) < MAX_PROBES:
+            return None
+        doing("runs to see which actuators move the part")
+        case, left = self._task.case, task.case.run.duration
+        try:
+            probes = Probes(self._surface, task, self._threads)
+        except Unmoved:
+            if chain is not None or self._moves:
+                return None
+            raise
+        self.paths += probes.count
+        if not probes.best:
+            return None
+        ends = task.settings.cycles or any(case.actuators[k].cycles for k in task.together) or answers_drives(case)
+        if probes.time > left and self._moves:  # at frequencies of their own they may be faster
+            return None
+        if probes.time > left and not ends:
+            begin, self._horizon = self._horizon - left, min(self._horizon - left + probes.time, LONGEST * self._own)
+            self._task, task = self._task.within(self._horizon), task.within(self._horizon - begin)
+        start = probes.start(task)
+        self.paths += len(probes.best)
+        return self._search(task, chain, at_most, start=start)
 
     @property
     def reached(self) -> bool:
@@ -118,6 +167,7 @@ class Approach:
             return False
         way = self._followed((Leg(0.0, own, moving),), ())
         self.paths += 1
+        self._moves = way.path.distance > LEAST * task.away
         if not settled(way.path) or way.cost >= task.away:
             return False
         if not settings.is_robust:
@@ -125,16 +175,33 @@ class Approach:
         return way.cost <= NEAR * task.away
 
     def _search(
-        self, task: Task, chain: Way | None, at_most: int, around: bool = False, wide: bool = False
+        self,
+        task: Task,
+        chain: Way | None,
+        at_most: int,
+        around: bool = False,
+        wide: bool = False,
+        start: FloatArray | None = None,
     ) -> Way | None:
-        """Search for the drives of a leg after a chain of legs, on so many paths at most; return them all."""
-        if (left := self._task.settings.max_paths - self.paths) <= 0:
+        """Search for the drives of a leg after a chain of legs, on so many paths at most; return them all.
+
+        start: of knobs that all drives have together.
+        """
+        if (left := self._max_paths - self.paths) <= 0:
             return None
-        knobs = Knobs(task.case, task.settings, task.movers, around, wide)
+        movers = task.movers if start is None else task.together
+        knobs = Knobs(task.case, task.settings, movers, around, wide, start is not None)
         paths = Paths(task.case, self._surface, self._threads)
-        search = Search(paths, task, knobs, self._count, min(at_most, left), self._searches)
+        first = knobs.own if around else start
+
+        def count(done: int, _: int) -> None:
+            self._count(done)
+            nearest = min(search.best.cost, self.best.cost if self.best else math.inf)
+            doing(f"paths at most; {quantity(nearest, 'm')} from the target so far")
+
+        search = Search(paths, task, knobs, count, min(at_most, left), self._searches, first)
         self._searches += 1
-        self._under_way = partial(self._way, search, task.movers, chain)
+        self._under_way = partial(self._way, search, movers, chain)
         try:
             search.run()
         finally:
@@ -179,9 +246,16 @@ class Approach:
             return None
         return task if left >= _min_duration(task) else None
 
-    def _count(self, done: int, _: int) -> None:
-        max_paths = self._task.settings.max_paths
-        self._tell(min(self.paths + done, max_paths), max_paths)
+    @property
+    def _max_paths(self) -> int:
+        """How many paths are followed at most."""
+        settings = self._task.settings
+        if settings.paths is not None or settings.is_robust:
+            return settings.max_paths
+        return affordable(self._task.case, self._horizon, MAX_CYCLES, LEAST_PATHS, settings.max_paths)
+
+    def _count(self, done: int) -> None:
+        self._tell(min(self.paths + done, self._max_paths), self._max_paths)
 
 
 def _min_duration(task: Task) -> float:

@@ -19,7 +19,7 @@ from active_surface.steering.robustness import (
     stroke_room,
 )
 from active_surface.steering.settings import Settings
-from active_surface.steering.task import Task, able, offset_of
+from active_surface.steering.task import TOGETHER, Task, able, offset_of
 from coupling import answers_drives, build_drives, build_friction, follow_part, shared_surface
 from coupling.case import ActuatorCase, Case
 from particle import AnyDrive, SurfaceMotion, interruptible
@@ -61,7 +61,9 @@ def prepared(case: Case, settings: Settings) -> SurfaceMotion:
     sets: list[list[AnyDrive]] = []
     if answers_drives(case):
         chosen = able(case, settings)
-        sets = spread_drives(case, settings, chosen, len(chosen) if settings.actuators else settings.nearest)
+        sets = spread_drives(
+            case, settings, chosen, len(chosen) if settings.actuators else settings.nearest or TOGETHER
+        )
     surface = interruptible(shared_surface, case, sets, case.run.duration)
     interruptible(follow_part, case, surface, build_friction(case))
     return surface

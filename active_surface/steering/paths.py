@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -67,6 +68,12 @@ def path_of(case: Case, surface: SurfaceMotion) -> Trajectory:
 def settled(trajectory: Trajectory) -> bool:
     """Whether the part has come to rest at the end and the drives will not move it again."""
     return trajectory.outcome is Outcome.STUCK and bool(trajectory.stays)
+
+
+def affordable(case: Case, duration: float, cycles: float, least: int, most: int) -> int:
+    """How many paths over a duration [s] have so many cycles in all at the case's highest frequency; within bounds."""
+    fastest = max(actuator.frequency or 0.0 for actuator in case.actuators)
+    return max(least, min(most, math.floor(cycles / max(duration * fastest, 1.0))))
 
 
 def driven(case: Case, actuators: tuple[ActuatorCase, ...]) -> Case:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import accumulate
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -34,6 +36,8 @@ def read_task(
     quantile: float | None = None,
     cvar: float | None = None,
     heading: float | None = None,
+    by: Place | None = None,
+    **changes: Any,
 ) -> Task:
     """Read an aim file or a case file as a task.
 
@@ -49,6 +53,10 @@ def read_task(
         The quantile beyond which their mean distance is made small; likewise.
     heading : float, optional
         The heading of a part with a footprint at the target, rad; replaces the file's.
+    by : point, optional
+        The target from the part's start, m; likewise.
+    **changes
+        Fields of `Settings` that replace the file's, if not None.
 
     Returns
     -------
@@ -62,16 +70,26 @@ def read_task(
     ValueError
         The target does not suit the case.
     """
-    case, settings, own_target, own_heading = read_settings(path, target is None)
-    goal = target or own_target
-    if goal is None:
-        raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
+    if target is not None and by is not None:
+        raise ValueError("by must not be given with a target, whose place it takes")
+    case, settings, own_targets, own_heading = read_settings(path, target is None and by is None)
+    targets = [target] if target is not None else own_targets if by is None else _after(case, [by])
+    if len(targets) > 1:
+        raise ValueError(f"by in [aim] must be one step for an aim; got {len(targets)}, which `plan` takes")
+    if not targets:
+        raise ValueError(
+            "the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim], "
+            "or a step from the start, as --by 150,0"
+        )
     if quantile is not None or cvar is not None:
         settings = Settings(**(dict(settings) | {"quantile": quantile, "cvar": cvar}))
-    return Task(case, goal, settings, Path(path).stem, own_heading if heading is None else heading)
+    name, turned = Path(path).stem, own_heading if heading is None else heading
+    return Task(case, targets[0], _changed(settings, changes), name, turned)
 
 
-def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
+def read_route(
+    path: str | os.PathLike[str], through: Sequence[Place] = (), by: Sequence[Place] = (), **changes: Any
+) -> Route:
     """Read an aim file or a case file as a route.
 
     Parameters
@@ -80,6 +98,10 @@ def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
         The file.
     through : sequence of points
         The way-points, m.
+    by : sequence of points
+        Steps in their place, m, the first from the part's start; without both those of the file.
+    **changes
+        Fields of `Settings` that replace the file's, if not None.
 
     Returns
     -------
@@ -93,29 +115,46 @@ def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
     ValueError
         The way-points do not suit the case.
     """
-    case, settings, _, heading = read_settings(path, False)
+    if through and by:
+        raise ValueError("by must not be given with way-points, whose place it takes")
+    case, settings, own, heading = read_settings(path, not through and not by)
     if heading is not None:
         raise ValueError("heading in [aim] must not be given for a plan, whose way-points have none")
-    return Route(case, tuple(through), settings, Path(path).stem)
+    places = through or (_after(case, by) if by else own)
+    return Route(case, tuple(places), _changed(settings, changes), Path(path).stem)
 
 
-def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None, float | None]:
-    """The case, the settings, the target [m] and the heading [rad], if any, in a file; CaseError with every mistake.
+def _after(case: Case, steps: Iterable[Place]) -> list[Place]:
+    """Places [m] after each of some steps [m] from where the part of a case starts."""
+    return list(accumulate(steps, lambda at, step: (at[0] + step[0], at[1] + step[1]), initial=case.part.position))[1:]
 
-    aims: whether its target counts.
+
+def _changed(settings: Settings, changes: dict[str, Any]) -> Settings:
+    given = {key: value for key, value in changes.items() if value is not None}
+    return Settings(**(dict(settings) | given)) if given else settings
+
+
+def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, list[Place], float | None]:
+    """The case, the settings, the targets [m] and the heading [rad], if any, in a file; CaseError with every mistake.
+
+    aims: whether its targets count.
     """
     file = parse(path)
     if "aim" not in file.tables:
-        return read_case(path), Settings(), None, None
+        return read_case(path), Settings(), [], None
     try:
         table = AimTables.model_validate(file.tables, context=UNITS_REQUIRED).aim
         case = _case(Path(path), table)
-        if wrong := list(mistakes(case, table, table.target if aims else None, table.heading)):
+        targets = _after(case, table.by) if table.by else [table.target] if table.target else []
+        wrong = list(mistakes(case, table, targets[0] if aims and targets else None, table.heading))
+        if table.by and table.target:
+            wrong.append(("by", "must not be given with target, whose place it takes"))
+        if wrong:
             raise Faults((("aim", key), message) for key, message in wrong)
     except (ValidationError, Faults) as error:
         raise file.error(mistakes_of(error, AimTables, file.tables)) from None
     own = {key: getattr(table, key) for key in Settings.model_fields}
-    return case, Settings.model_construct(**own), table.target, table.heading
+    return case, Settings.model_construct(**own), targets, table.heading
 
 
 def _case(path: Path, table: AimTable) -> Case:

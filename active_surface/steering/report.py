@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from typing import Any
 
 from active_surface.steering.following import Progress
-from active_surface.steering.knobs import Stop
+from active_surface.steering.knobs import KEYS, Stop
+from active_surface.steering.paths import settled
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
 from active_surface.steering.task import Route
 from common import joined
-from coupling.case import ActuatorCase, amplitude
+from coupling.case import ActuatorCase, amplitude, quoted
 
 MICRO, MILLI = 1e6, 1e3
 WIDER = 2.0  # times a bound: what a hint proposes
-KEYS = ("frequency", "stroke", "delay", "cycles")
 
 
 def figures(result: Aimed) -> dict[str, Any]:
@@ -33,7 +33,9 @@ def figures(result: Aimed) -> dict[str, Any]:
         "interrupted": result.interrupted,
         "paths": result.paths,
         "at_bounds": [
-            {"actuator": stop.knob.actuator, "key": stop.knob.key, "bound": stop.bound} for stop in result.stops
+            {"actuator": k, "key": stop.knob.key, "bound": stop.bound}
+            for stop in result.stops
+            for k in stop.knob.actuators
         ],
         "legs": [
             {
@@ -60,30 +62,38 @@ def lines(result: Aimed) -> list[tuple[str, str]]:
         rows += [(f"actuator {k}", _drive(leg.actuators[k])) for k in leg.movers]
     others = any(amplitude(one) for k, one in enumerate(first.actuators) if k not in first.movers)
     rows += [("others", "driven as in the case")] if others and len(result.legs) == 1 else []
-    rows += [] if result.reached else [("hint", text) for text in hints(result.stops)]
+    if (time := result.case.run.duration) > task.case.run.duration:
+        own = f"the case's {task.case.run.duration * MILLI:g} ms, in which the part does not get that far"
+        rows.append(("time", f"{time * MILLI:.4g} ms in place of {own}"))
+    rows += [] if result.reached else [("hint", text) for text in hints(result.stops, result)]
     return rows + _last_lines(result)
 
 
-def hints(stops: Sequence[Stop]) -> list[str]:
-    """What stood at a bound of the search, and the line of an aim file that widens it."""
+def hints(stops: Sequence[Stop], result: SteeringResult) -> list[str]:
+    """What may bring a part nearer that has missed: wider bounds for what stood at one, or more time or paths."""
     groups: dict[tuple[str, bool], list[Stop]] = {}
     for stop in stops:
         groups.setdefault((stop.knob.key, stop.highest), []).append(stop)
     texts = []
     for (key, highest), group in groups.items():
-        numbers = [str(k) for k in sorted({stop.knob.actuator for stop in group})]
+        numbers = [str(k) for k in sorted({k for stop in group for k in stop.knob.actuators})]
         low, high = min(stop.knob.low for stop in group), max(stop.knob.high for stop in group)
         if highest:
             high *= WIDER
         else:
             low *= WIDER if low < 0 else 1 / WIDER
-        bounds = ", ".join(
-            _value(key, bound) if key == "cycles" else f'"{_value(key, bound)}"' for bound in (low, high)
-        )
+        ends = _value(key, low), _value(key, high)
+        wider = f"{key} = [{', '.join(ends if key == 'cycles' else map(quoted, ends))}] in [aim]"
+        wider = f'--frequency "{":".join(ends)}"' if key == "frequency" else wider
         which = f"{'largest' if highest else 'smallest'} {'number of cycles' if key == 'cycles' else key}"
         values = joined(sorted({_value(key, stop.bound) for stop in group}))
         who, own = ("actuators", "their") if len(numbers) > 1 else ("actuator", "its")
-        texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {key} = [{bounds}] in [aim] widens it")
+        texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {wider} allows more")
+    if not settled(result.trajectory):
+        texts.append("the part is not at rest for good when the run ends: a longer duration leaves it time to stop")
+    elif not texts:
+        more = f"paths = {2 * result.paths} in [aim] tries more"
+        texts.append(f"none of the drives tried brings the part nearer; {more}, and `plan` goes there in steps")
     return texts
 
 
@@ -128,10 +138,11 @@ def plan_figures(result: Planned) -> dict[str, Any]:
 def plan_lines(result: Planned) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     route, tolerance, rows = result.route, result.settings.tolerance, []
-    legs = zip(route.through, result.arrivals, result.distances, strict=False)
-    for k, (target, time, distance) in enumerate(legs):
+    legs = zip(route.through, result.arrivals, result.distances, result.stops, strict=False)
+    for k, (target, time, distance, stops) in enumerate(legs):
         verdict = _verdict(distance, tolerance, " off")
         rows.append((f"leg {k}", f"{point(target)} by {time * MILLI:g} ms: {verdict}"))
+        rows += [("hint", text) for text in hints(stops, result)] if distance > tolerance else []
     if result.failure:
         label, _, reason = result.failure.partition(": ")
         rows.append((label, reason))

@@ -105,6 +105,8 @@ class Planned(_Result):
         When the part comes to a final rest at each way-point, or beside it, s.
     tried : int
         Number of way-points with drives, including one on whose way the path failed.
+    stops : tuple of tuple
+        The knobs that stand at a bound of the search, of each leg.
     failure : str
         Why there are fewer arrivals than way-points; empty if there are not, or if Ctrl-C came.
     """
@@ -112,6 +114,7 @@ class Planned(_Result):
     route: Route
     arrivals: tuple[float, ...]
     tried: int
+    stops: tuple[tuple[Stop, ...], ...] = ()
     failure: str = ""
 
     @property

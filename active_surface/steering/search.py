@@ -89,15 +89,25 @@ class Trials:
 class Search:
     """Finds the drives that bring a part to a task's target within its case's duration; equal seeds, equal results.
 
-    Populations evolve around the case's own drives, where the knobs do, or anywhere. A robust search evolves
-    undisturbed paths first, for half of the paths at most, then continues around the most robust of their best drives.
+    Newton's method is tried from a first setting, then populations evolve around it; without one anywhere. A robust
+    search evolves undisturbed paths anywhere for half of the paths, then continues around the most robust of the best.
     """
 
     def __init__(
-        self, paths: Paths, task: Task, knobs: Knobs, tell: ProgressCallback, max_paths: int, number: int
+        self,
+        paths: Paths,
+        task: Task,
+        knobs: Knobs,
+        tell: ProgressCallback,
+        max_paths: int,
+        number: int,
+        start: FloatArray | None = None,
     ) -> None:
-        """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers."""
-        self.knobs, self._paths, self._number, self._populations = knobs, paths, number, 0
+        """max_paths: after which the search ends.  number: of the search; each has its own stream of random numbers.
+
+        start: (n,) of the knobs.
+        """
+        self._start, self.knobs, self._paths, self._number, self._populations = start, knobs, paths, number, 0
         self._newton_range, self._seed = NEWTON_RANGE * paths.surface.size, task.settings.seed
         self._robust: Trials | None = None
         if task.settings.is_robust:
@@ -117,19 +127,21 @@ class Search:
 
     def run(self) -> None:
         """Search until the target is reached or the paths are used up; after Ctrl-C the best so far counts."""
-        nominal, robust, start = self._nominal, self._robust, self.knobs.own if self.knobs.around else None
-        if not self.knobs.knobs or start is not None:
-            (robust or nominal).of((np.zeros(0) if start is None else start)[None])
+        nominal, robust, start = self._nominal, self._robust, self._start
         if not self.knobs.knobs:
+            (robust or nominal).of(np.zeros((1, 0)))
             return
-        if robust is None:
-            while not (nominal.reached or nominal.exhausted):
-                self._evolve(nominal, self._newton_range, None if start is None else nominal.best.values)
-            return
-        while start is None and not nominal.exhausted:
-            self._evolve(nominal, self._newton_range)
-            robust.of(nominal.recent.values[None])
-        if not robust.exhausted:
+        if start is not None:
+            nominal.of(start[None])
+            if not nominal.reached and nominal.recent.cost <= self._newton_range:
+                _newton(self.knobs, nominal)
+            if robust is not None:
+                robust.of(nominal.best.values[None])
+        while not nominal.exhausted and (robust is not None or not nominal.reached):
+            self._evolve(nominal, self._newton_range, None if start is None or robust else nominal.best.values)
+            if robust is not None:
+                robust.of(nominal.recent.values[None])
+        if robust is not None and not robust.exhausted:
             self._evolve(robust, 0.0, robust.best.values)
 
     def _evolve(self, trials: Trials, newton_range: float, middle: FloatArray | None = None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
@@ -75,8 +75,10 @@ class Settings(Table):
         default=None, examples=[[0, 4]]
     )
     """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
-    nearest: Count = 4
-    """How many these are."""
+    nearest: Count | None = Field(default=None, examples=[4])
+    """How many these are; without it 9 at one frequency, 4 with a frequency each."""
+    groups: Literal["each", "columns", "rows", "all"] = "each"
+    """Which of them move alike: those of a column or row, all, or none."""
     frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None
     """Bounds; without them from 0.2 times to twice its own."""
     stroke: Annotated[tuple[Length, Length], _Bounds('["0 um", "60 um"]')] | None = None
@@ -88,7 +90,7 @@ class Settings(Table):
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
     """From which random numbers follow."""
     paths: Count | None = Field(default=None, examples=[10000])
-    """How many are followed at most; without it 10 000, with a quantile or CVaR 40 000."""
+    """How many are followed at most; without it 10 000, fewer where runs are long, with a quantile or CVaR 40 000."""
     tolerance: Length = Field(default=5e-7, gt=0)
     """The distance from the target at which a search ends."""
     quantile: StrictFloat | None = Field(default=None, gt=0, le=1, examples=[0.9])
@@ -99,8 +101,8 @@ class Settings(Table):
         default=None, examples=[{"friction": "1 %", "part.position": "1 um", "actuators.*.stroke": "1 %"}]
     )
     """How far disturbed runs deviate at most, by field; without it friction and strokes by 1 %, the start by 1 um."""
-    scatter: Count = 100
-    """How many disturbed runs measure how robust the drives are."""
+    scatter: Count | None = Field(default=None, examples=[100])
+    """How many disturbed runs measure how robust the drives are; without it 100, or fewer where runs are long."""
 
     @property
     def is_robust(self) -> bool:
@@ -122,6 +124,10 @@ class AimTable(Settings):
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
     """Where the part is to go, unless the command states it."""
+    by: Annotated[tuple[Point, ...], Field(min_length=1)] | None = Field(
+        default=None, examples=[[["80 um", "0 um"], ["0 um", "80 um"]]]
+    )
+    """In place of a target the step from the start; for a plan steps, each from the way-point before."""
     heading: Angle | None = Field(default=None, examples=["30 deg"])
     """The heading that a part with a footprint is to have there; without it any will do."""
 

@@ -27,6 +27,8 @@ from coupling.case import (
 )
 from particle import Trajectory
 
+TOGETHER, APART = 9, 4  # actuators that take part with one frequency for all, and with a frequency each
+
 Place = tuple[float, float]
 """(x, y) in m."""
 Mistake = tuple[str, str]
@@ -83,7 +85,12 @@ class Task:
 
     @property
     def movers(self) -> tuple[int, ...]:
-        """The numbers of the actuators that take part, ascending."""
+        """The numbers of the actuators that take part with a frequency each, ascending."""
+        return movers(self.case, self.settings, self.target, APART)
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """The same of those that take part with one frequency for all."""
         return movers(self.case, self.settings, self.target)
 
     @property
@@ -125,7 +132,9 @@ class Route:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or self.case.name)
-        wrong = [] if self.through else ["through must be one way-point or more; got none"]
+        wrong = (
+            [] if self.through else ["through must be one way-point or more, as --through 20,0 or --by 20,0; got none"]
+        )
         if len(self.through) > 1 and self.case.part.face is not None:
             wrong.append("through must be one way-point for a part with a footprint, whose heading no leg carries on")
         for number, place in enumerate(self.through):
@@ -172,13 +181,13 @@ def _from(case: Case, start: Place | None, heading: float | None = None) -> Case
     return case.model_copy(update={"part": case.part.model_copy(update=rest), "source": None})
 
 
-def movers(case: Case, settings: Settings, target: Place) -> tuple[int, ...]:
+def movers(case: Case, settings: Settings, target: Place, nearest: int = TOGETHER) -> tuple[int, ...]:
     """The numbers of the actuators that take part on the way to a target [m]: those stated, or the nearest."""
     fit = able(case, settings)
     if settings.actuators is not None:
         return tuple(fit)
     away = _from_way(np.array([case.actuators[k].position for k in fit]), case.part.position, target)
-    order = np.argsort(away, kind="stable")[: settings.nearest].tolist()
+    order = np.argsort(away, kind="stable")[: settings.nearest or nearest].tolist()
     return tuple(sorted(fit[k] for k in order))
 
 

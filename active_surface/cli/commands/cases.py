@@ -69,9 +69,9 @@ def check(file: Path) -> Answer:
     elif kind == "aim":
         from active_surface.steering import read_settings
 
-        case, _, target, heading = read_settings(file, True)
+        case, _, targets, heading = read_settings(file, True)
         actuators = len(case.actuators)
-        figures = {"actuators": actuators, "target": target, "heading": heading}
+        figures = {"actuators": actuators, "target": targets[0] if targets else None, "heading": heading}
         text = f"an aim of {case.name}, {count(actuators, 'actuator')}"
     else:
         cases = read_all(file)

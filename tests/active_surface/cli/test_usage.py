@@ -28,8 +28,7 @@ MISUSES = [
     (["run", "x", "--ouput", "y"], "No such option '--ouput'. Did you mean '--output'?"),
     (["sweep", "x", "-t", "0"], "'--threads' / '-t': 0 is not in the range x>=1"),
     (["completion", "bsh"], "'bsh' is not one of 'bash', 'zsh', 'fish'"),
-    (["plan", "x"], "Missing option '--through'"),
-    (["plan", "x", "--through", "-t", "1"], "Missing option '--through'"),
+    (["plan", "x", "--groups", "row"], "'row' is not one of 'each', 'columns', 'rows', 'all'"),
 ]
 
 

@@ -21,7 +21,7 @@ BELOW = {
     "actuators.*.stroke": 8e-6,
     "actuators.*.frequency": 2e3,
 }  # of a part below both actuators, which drive it away
-AWAY = ((2e-6, -46e-6),)
+AWAY = ((2e-6, -46e-6), (6e-6, -52e-6))
 MORE = 1.25  # times the friction of the case
 
 
