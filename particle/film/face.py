@@ -34,7 +34,7 @@ from particle.body import (
 )
 from particle.events import Request, Row
 from particle.film.film import Layer
-from particle.film.gap import Gap, drag_of, fill_asperities, fill_gap, fill_limit
+from particle.film.gap import Gap, fill_asperities, fill_gap, fill_limit
 from particle.film.memory import CONTENTS, HEADING, SPIN, V_X, V_Y, Memory, X, Y, Z
 from particle.friction import FrictionLaw, friction_slope
 from particle.jit import device_no_arrays, jit
@@ -44,6 +44,12 @@ from particle.types import FloatArray
 
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
 LIFTS = 1e-6  # of the pull-off force: what moments lift an edge by counts from there on
+
+
+@device_no_arrays
+def drag_of(layer: Layer, gap: float) -> float:
+    """mu A/(h + 2 mfp) [N s/m], the force of the air against a slip over its velocity, at a mean gap [m]."""
+    return layer.viscosity * layer.area / (gap + 2.0 * layer.free_path)
 
 
 @device_no_arrays

@@ -184,12 +184,6 @@ def fill_flow(layer: Layer, g: Gap, rate: FloatArray) -> None:
 
 
 @device_no_arrays
-def drag_of(layer: Layer, gap: float) -> float:
-    """mu A/(h + 2 mfp) [N s/m], the force of the air against a slip over its velocity, at a mean gap [m]."""
-    return layer.viscosity * layer.area / (gap + 2.0 * layer.free_path)
-
-
-@device_no_arrays
 def stored(layer: Layer, g: Gap) -> float:
     """p_a A/2 sum a_i a_j <psi_i psi_j h> [J], what the film stores."""
     middle = layer.offset + g.z * layer.law.roughness

@@ -7,9 +7,9 @@ from particle.events import FIRST_STEP, Request
 from particle.events.mechanics import Now, RestPull, at_contact, first_slip, mobility, over_plane, pull, rest_pull
 from particle.events.sliding import Stop, frozen_stop
 from particle.film.advance import MIN_STEP, advance
-from particle.film.face import face_lost, face_slip_rate
+from particle.film.face import drag_of, face_lost, face_slip_rate
 from particle.film.film import Layer
-from particle.film.gap import Gap, drag_of, stored
+from particle.film.gap import Gap, stored
 from particle.film.memory import CONTENTS, HEADING, HEAT, LOSS, PUMPED, SPIN, STORED, V_X, V_Y, WORK, Memory, X, Y
 from particle.film.state import energy_now, fill_rate, leaves, settle
 from particle.film.step import LONGER, attempt, begin_step, take_step

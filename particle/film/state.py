@@ -5,9 +5,18 @@ from __future__ import annotations
 from particle.body import Face, within_cells
 from particle.events import Request, Row
 from particle.events.mechanics import Pull, at_contact, braked, energy, inner, length, pull, rising, slip
-from particle.film.face import face_energy, fill_face_row, place_face, rim_of_face, slide_face, stand_face, weigh
+from particle.film.face import (
+    drag_of,
+    face_energy,
+    fill_face_row,
+    place_face,
+    rim_of_face,
+    slide_face,
+    stand_face,
+    weigh,
+)
 from particle.film.film import FUNCTIONS, Layer
-from particle.film.gap import Gap, drag_of, fill_flow, fill_gap, stored
+from particle.film.gap import Gap, fill_flow, fill_gap, stored
 from particle.film.memory import CONTENTS, HEADING, HEAT, LOSS, SPIN, STORED, V_X, V_Y, WORK, Memory, X, Y, Z
 from particle.jit import device_no_arrays
 from particle.modes import Mode, Verdict
