@@ -102,9 +102,7 @@ class Bent(Film):
     """A film over asperities that follow the bent surface, whatever the part's law."""
 
     def layer(self, friction: Any) -> Any:
-        layer = super().layer(friction)
-        means = layer.means + np.outer([0, 1, 0, 1], layer.means[0]) * layer.half**2 / 6  # from the middle again
-        return layer._replace(bends=True, means=means)
+        return super().layer(friction)._replace(bends=True)
 
 
 class Flat(Film):
@@ -114,7 +112,7 @@ class Flat(Film):
         layer = super().layer(friction)
         means, products = layer.means.copy(), layer.products.copy()
         means[1:] = products[1:] = 0.0
-        return layer._replace(means=means, products=products)
+        return layer._replace(means=means, products=products, places=layer.places * [0, 0, 0, 1])
 
 
 def quick_start() -> None:

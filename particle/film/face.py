@@ -19,6 +19,7 @@ from particle.body import (
     Face,
     base_at,
     energy_of,
+    enter_all,
     find_rates,
     friction_wrench,
     gauge,
@@ -34,7 +35,7 @@ from particle.body import (
 )
 from particle.events import Request, Row
 from particle.film.film import Layer
-from particle.film.gap import Gap, fill_asperities, fill_gap, fill_limit
+from particle.film.gap import Gap, fill_asperities, fill_gap, fill_limit, fill_separation
 from particle.film.memory import CONTENTS, HEADING, SPIN, V_X, V_Y, Memory, X, Y, Z
 from particle.friction import FrictionLaw, friction_slope
 from particle.jit import device_no_arrays, jit
@@ -99,15 +100,27 @@ def _by_borne(layer: Layer, law: FrictionLaw, g: Gap) -> float:
 
 
 @jit
-def shares(layer: Layer, law: FrictionLaw, scratch: NDArray[Gap], rows: NDArray[Row]) -> FloatArray:
-    """Friction's limit Q [N], dQ/dN_c and the drag [N s/m] at rows of a path; (k, 3). scratch: (1,)."""
-    out, g = np.zeros((len(rows), 3)), scratch[0]
+def shares(
+    surface: Surface, request: Request, layer: Layer, face: Face, memory: Memory, rows: NDArray[Row]
+) -> FloatArray:
+    """Friction's limit Q [N], dQ/dN_c and the drag [N s/m] at rows of a path; (k, 3)."""
+    out, g, body, law = np.zeros((len(rows), 3)), memory.gap[0], memory.body, request.part.law
     for k in range(len(rows)):
-        g.z, g.load = (rows[k].gap - layer.offset) / layer.law.roughness, rows[k].load - rows[k].air
+        row, state = rows[k], memory.step[0].state
+        state[X], state[Y], state[HEADING] = row.x, row.y, row.heading
+        state[V_X], state[V_Y], state[SPIN] = row.v_x, row.v_y, row.spin
+        cell, _ = enter_all(
+            surface, body.local, body.slots, face, row.x, row.y, row.heading, row.time, math.inf, (0.0, 0.0)
+        )
+        if cell < 0:
+            continue
+        stand_face(request, face, memory, state, row.time, g)
+        g.width, g.load = row.gap, row.load - row.air
+        fill_separation(layer, g)
         fill_asperities(layer, g.z, g)
         g.rise = g.net_slope
         fill_limit(layer, law, 0.0, g)
-        out[k, 0], out[k, 1], out[k, 2] = g.limit, _by_borne(layer, law, g), drag_of(layer, rows[k].gap)
+        out[k, 0], out[k, 1], out[k, 2] = g.limit, _by_borne(layer, law, g), drag_of(layer, row.gap)
     return out
 
 

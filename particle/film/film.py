@@ -18,6 +18,7 @@ from particle.types import FloatArray
 FUNCTIONS: Final = 5  # of the pressure
 SIDE_POINTS = 8  # of the rule for the flow
 LONG = 2.5  # sides of a rectangle, one over the other, from where on more functions are along it than across
+DIFFERENCE = 1e-2  # roughnesses
 PER_AREA = 371.6019695430806  # Pa, the pull-off force of `KogutEtsion()`, which takes .4 s to find
 
 
@@ -25,12 +26,13 @@ class Layer(NamedTuple):
     """A film and the asperities in it, as kernels read it; means are over the face."""
 
     law: FrictionLaw  # of the asperities, point by point
-    bends: bool  # whether they meet the surface as it bends; else a flat one, under a gap that is uniform
+    bends: bool  # whether they meet the surface as it bends; else a flat one
     grips: bool  # whether they carry the friction; else the part's own law does, under their load
     closed: float  # roughnesses, the separation at the nearest point where the contact's law ends
     half: float  # m, of the side along x, or a radius
     area: float  # m^2
     offset: float  # m, of the gap at the separation 0
+    decay: float  # m, over which the asperities' load falls e times
     pressure: float  # Pa, around the face
     viscosity: float  # Pa s
     free_path: float  # m
@@ -38,6 +40,7 @@ class Layer(NamedTuple):
     values: FloatArray  # (points, FUNCTIONS), of a rule for half the face
     slopes: FloatArray  # (points, 2, FUNCTIONS) times `half`
     places: FloatArray  # (points, 4) x^2/2, x y, y^2/2 [m^2] and weights of means
+    heights: FloatArray  # (3,) m^2, means of x^2/2, x y and y^2/2
     means: FloatArray  # (4, FUNCTIONS) of the functions times 1, x^2/2, x y and y^2/2 [1, m^2]
     products: FloatArray  # (4, FUNCTIONS, FUNCTIONS) of products of two of them, likewise
 
@@ -88,8 +91,6 @@ class Film:
         values, slopes = _on_disc(points) if disc else _on_square(points, longer)
         exact, _ = _on_disc(fine) if disc else _on_square(fine, longer)
         bends = np.column_stack([np.ones(len(fine)), _heights(half * fine)])
-        if local is None:
-            bends[:, 1:] -= fine_weights @ bends[:, 1:]  # asperities that do not bend meet the mean gap
         return Layer(
             law=law._replace(per_area=law.per_area * np.repeat([share, share * factor], 4)),
             bends=local is not None,
@@ -98,6 +99,7 @@ class Film:
             half=float(half[0]),
             area=self.area,
             offset=float(own.mean_gap(0.0)) + air.bow,
+            decay=_decay(own),
             pressure=air.pressure,
             viscosity=air.viscosity,
             free_path=air.mean_free_path,
@@ -105,6 +107,7 @@ class Film:
             values=values,
             slopes=slopes * (half[0] / half)[:, None],
             places=np.column_stack([_heights(half * points), weights]),
+            heights=fine_weights @ bends[:, 1:],
             means=np.einsum("k,km,ki->mi", fine_weights, bends, exact),
             products=np.einsum("k,km,ki,kj->mij", fine_weights, bends, exact, exact),
         )
@@ -137,6 +140,14 @@ def unscaled(friction: Contact) -> tuple[Any, float]:
         factor *= friction.factor
         friction = friction.contact
     return friction, factor
+
+
+@lru_cache(maxsize=16)
+def _decay(contact: KogutEtsion) -> float:
+    """-N'/N'' [m] of a contact's net load N where it is 0."""
+    steps = DIFFERENCE * np.array([-1, 0, 1])
+    less, none, more = contact.net_load(contact.separation(0.0) + steps)
+    return float(0.5 * DIFFERENCE * (less - more) / (less - 2 * none + more) * contact.roughness)
 
 
 @lru_cache(maxsize=16)

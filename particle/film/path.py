@@ -72,7 +72,7 @@ def find_film_path(
         """Where contact and centre of mass are at rows of the path, and what acts there."""
         if face is not None:
             memory = new_memory(surface.record, face, np.zeros(1, dtype=np.int64))
-            on_film = shares(layer, request.part.law, memory.gap[:1], rows)
+            on_film = shares(surface.record, request, layer, face, memory, rows)
             return face_states(surface.record, request, face, memory.body, rows, on_film)
         height = surface.half_thickness
         points = surface.samples(np.column_stack([rows["x"], rows["y"]]), np.ascontiguousarray(rows["time"]))

@@ -65,7 +65,6 @@ class Film:
     contact: RoughContact
     load: Callable[[float], float]
     curvature: Callable[[float], float] = lambda t: 0.0
-    local: bool = True  # the asperities' load: its integral over the face if True, that of the mean gap if not
     points: int = 10  # n, from the middle of a side to its end
     sides: tuple[float, float] = (SIDE, SIDE)  # m
 
@@ -79,7 +78,6 @@ class Film:
         (x, w_x, _, _), (y, w_y, _, _) = self.grid
         area = np.outer(w_x, w_y)
         shape = self.curvature(t) / 2 * (sum(side**2 for side in self.sides) / 12 - x[:, None] ** 2 - y**2)
-        at = shape if self.local else 0 * shape
         inner = np.s_[..., :-1, :-1]
         u = u.T.reshape(-1, self.points - 1, self.points - 1)
         h0 = np.einsum("kij,ij->k", u, area[inner])[:, None, None] / area[inner].sum()
@@ -87,9 +85,9 @@ class Film:
             h = h0 + shape
             p = np.ones_like(h)
             p[inner] = u / h[inner]
-            asperities = (area * self.contact.pressure(h0 + at)).sum(axis=(1, 2))
+            asperities = (area * self.contact.pressure(h0 + shape)).sum(axis=(1, 2))
             excess = asperities + PRESSURE * (area * (p - 1)).sum(axis=(1, 2)) - self.load(t) - more
-            slope = self.contact.slope(h0 + at)
+            slope = self.contact.slope(h0 + shape)
             slope[inner] = slope[inner] - PRESSURE * u / h[inner] ** 2
             step = excess / (area * slope).sum(axis=(1, 2))
             h0 = h0 - step[:, None, None]
