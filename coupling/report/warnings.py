@@ -129,8 +129,9 @@ def _of_air(s: Summary) -> Iterator[str]:
     if air.included == "film":
         if air.sag_over_gap > FLAT and not (isinstance(s, PlateSummary) and s.local_contact):
             yield (
-                f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, which is "
-                f"taken as uniform; that holds up to about {FLAT}, and far above it the direction of the way alone."
+                f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, and "
+                f"asperities are taken to meet a plane; that holds up to about {FLAT}, and far above it at most for "
+                "the direction of the way."
                 + (' model = "kogut-etsion" with local_contact = true follows the bend.' if s.turned is None else "")
             )
         return
