@@ -7,22 +7,25 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-from active_surface.steering import Aimed, Task, aim_over, prepared
+from active_surface.steering import Aimed, Settings, Task, aim_over, prepared
+from coupling import report
 from coupling.case import Case, length_text
 from particle import Trajectory
 
 NEARER: Final = 0.99  # of the distance at the start: drives that leave more are not taken
 APART: Final = 0.2  # s, of looks at the search
 
-Watch = Callable[[int, int, Trajectory | None], object]
-"""Gets how many paths were followed, and of how many, and the path of the best drives."""
+CHOSEN: Final = ("groups", "frequency", "stroke")  # settings that the page has
+
+Watch = Callable[[int, int, float, Trajectory | None], object]
+"""Gets how many paths were followed, of how many, how long [s] the others take, and the path of the best drives."""
 
 
 class Search:
     """A search that another thread can stop."""
 
-    def __init__(self, case: Case, target: tuple[float, float]) -> None:
-        self.case, self.target = case, target
+    def __init__(self, case: Case, target: tuple[float, float], settings: Settings | None = None) -> None:
+        self.case, self.target, self.settings = case, target, settings or Settings()
         self._stopped = False
 
     def run(self, watch: Watch) -> Aimed | None:
@@ -30,8 +33,8 @@ class Search:
 
         Raises ValueError where the target cannot be reached, or the case cannot be run.
         """
-        task = Task(self.case, self.target)
-        looked, counts = 0.0, (0, 0)
+        task = Task(self.case, self.target, self.settings)
+        began, looked, counts = time.monotonic(), 0.0, (0, 0)
 
         def tell(done: int, of: int) -> None:
             nonlocal counts
@@ -42,8 +45,8 @@ class Search:
         def watched(look: Callable[[], Trajectory | None]) -> None:
             nonlocal looked
             if time.monotonic() - looked >= APART:
-                looked = time.monotonic()
-                watch(*counts, look())
+                (done, of), looked = counts, time.monotonic()
+                watch(done, of, (of - done) * (looked - began) / max(done, 1), look())
 
         try:
             return aim_over(prepared(task.case, task.settings), task, tell=tell, watch=watched)
@@ -56,7 +59,7 @@ class Search:
 
     def away(self, path: Trajectory) -> str:
         """How far from the target a path ends."""
-        return length_text(math.dist(path.position[-1].tolist(), self.target))
+        return report.with_micro_signs(length_text(math.dist(path.position[-1].tolist(), self.target)))
 
     def helps(self, result: Aimed) -> bool:
         """Whether the drives bring the part nearer to the target than it starts."""
@@ -65,6 +68,7 @@ class Search:
     def text(self, result: Aimed) -> str:
         """How near the drives bring the part."""
         found = f"After {result.paths} paths the part ends {length_text(result.distance)} from the target"
+        found = report.with_micro_signs(found)
         if result.reached:
             return f"{found}."
         if self.helps(result):

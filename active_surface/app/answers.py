@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.app.aiming import Search
-from active_surface.app.drawn import face_of, path_of, unit_of
+from active_surface.app.drawn import drift_of, face_of, path_of, unit_of
 from active_surface.app.full import Full, Superseded, full_answer
 from active_surface.app.quick import QuickPaths
 from active_surface.steering import Aimed
+from active_surface.studies.drifts import drift
 from coupling import Progress, ProgressCallback, SolvedPlates, ground_key, report
 from coupling.case import Case, InputError
 from particle import Trajectory
@@ -29,6 +30,7 @@ from particle import Trajectory
 Answer = TypeVar("Answer")
 
 KEPT_PLATES: Final = 4
+ACROSS: Final = 12  # places that parts are followed from, along the plate's longer side
 FULL: Final = 4  # threads of runs: one may take seconds to hear that nobody waits for it
 TEXT: Final = re.compile(r'("(?:[^"\\]|\\.)*")')  # in quotes, as `quoted` writes it
 Send = Callable[[dict[str, Any]], object]
@@ -96,11 +98,12 @@ class Answers:
         self._lanes, self._stop = lanes, np.zeros(1, np.int64)  # 1 once the case is another one
         self._ground = ("", 0.0)  # what models of the plate of the case follow from
         self._search: Search | None = None
+        self._drift: object = None  # a token of that which is wanted
         self._tasks: set[asyncio.Task[None]] = set()
 
     def forget(self) -> None:
         """Answer no more of what was asked before."""
-        self.full = None
+        self.full = self._drift = None
         self._stop[0] = 1
         self._stop = np.zeros(1, np.int64)
 
@@ -122,7 +125,7 @@ class Answers:
         if quick is None:
             self.send({"kind": "later", "turn": page_turn})
         elif not stop[0]:
-            drawn = path_of(quick.path, unit_of(case)) | {"face": face_of(case)}
+            drawn = path_of(quick.path, unit_of(case), quick.error) | {"face": face_of(case)}
             self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), "rest": rest, **drawn})
         else:  # another case has come in its place, but the page waits for an answer
             self.send({"kind": "passed", "turn": page_turn})
@@ -162,7 +165,9 @@ class Answers:
         try:
             work = self._lanes.quick_paths.prepare
             if wanted():
-                await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread(), wanted))
+                await self._lanes.run(
+                    self._lanes.models, work, case, _noting(self._from_thread(), wanted, "Preparing quick paths")
+                )
         except Superseded:
             return
         except ValueError:  # of strokes beyond those of the case, which may ask too much
@@ -172,20 +177,47 @@ class Answers:
         if wanted() and not self.searching:
             self.send({"kind": "idle"})
 
+    async def drift(self, case: Case, on: bool) -> None:
+        """Find where parts go from everywhere under the drives of a case; on: whether it is still wanted."""
+        self._drift = token = object() if on else None
+        if not on:
+            self.send({"kind": "idle"})
+            return
+
+        def wanted() -> bool:
+            return self._drift is token
+
+        def work() -> dict[str, Any]:
+            progress = _noting(found, wanted, "Where parts go")
+            return drift_of(drift(case, across=ACROSS, threads=1, progress=progress, plates=self._lanes.plates), unit)
+
+        unit, found = unit_of(case), self._from_thread()
+        try:
+            shown = await self._lanes.run(self._lanes.full, work)
+        except Superseded:
+            return
+        except ValueError as error:  # there is no such map
+            shown = {"text": as_typed(str(error).removeprefix("Input case of drift "))}
+        except Exception as error:
+            self.tell_error(error)
+            return
+        if wanted():
+            self.send({"kind": "drift", **shown})
+
     @property
     def searching(self) -> bool:
         """Whether a search is on."""
         return self._search is not None
 
-    def aim(self, case: Case, target: tuple[float, float], take: Callable[[Case], object]) -> None:
-        """Search for drives to a target [m]; take: gets the case with them.
+    def aim(self, search: Search, take: Callable[[Case], object]) -> None:
+        """Search for drives; take: gets the case with them.
 
         Raises Refused while another search is on.
         """
         if self._search is not None:
             raise Refused([("", "a search is on: stop it first")])
-        self._search = Search(case, target)
-        self.spawn(self._aim(self._search, take))
+        self._search = search
+        self.spawn(self._aim(search, take))
 
     def stop(self) -> None:
         """End the search, if there is one, with its best drives so far."""
@@ -195,9 +227,9 @@ class Answers:
     async def _aim(self, search: Search, take: Callable[[Case], object]) -> None:
         unit, found = unit_of(search.case), self._from_thread()
 
-        def watch(done: int, of: int, best: Trajectory | None) -> None:
+        def watch(done: int, of: int, left: float, best: Trajectory | None) -> None:
             shown = {} if best is None else path_of(best, unit) | {"away": search.away(best)}
-            found({"kind": "search", "done": done, "of": of, **shown})
+            found({"kind": "search", "done": done, "of": of, "left": left, **shown})
 
         try:
             result: Aimed | None = await self._lanes.run(self._lanes.full, search.run, watch)
@@ -237,12 +269,12 @@ class Answers:
         return lambda message: loop.call_soon_threadsafe(self.send, message)
 
 
-def _noting(send: Send, wanted: Callable[[], bool]) -> Progress:
+def _noting(send: Send, wanted: Callable[[], bool], what: str) -> Progress:
     """A progress that tells the page its stages; Superseded once it is not wanted any more."""
 
     @contextmanager
     def progress(stage: str) -> Iterator[ProgressCallback]:
-        text = f"Preparing quick paths: {stage[0].lower()}{stage[1:]}"
+        text = f"{what}: {stage[0].lower()}{stage[1:]}"
 
         def tell(done: int, of: int) -> None:
             if not wanted():

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
+from active_surface.studies.drifts import Drift, Fate
 from active_surface.views import packed, thinned
 from common import Unit, quantity_text, unit_for
 from coupling import report
@@ -49,8 +50,8 @@ def face_of(case: Case) -> list[list[float]] | None:
     return None if face is None else (face.outline((0.0, 0.0), 0.0) * unit_of(case).per_si).tolist()
 
 
-def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
-    """A path, how it ended and how far the part came."""
+def path_of(path: Trajectory, unit: Unit, error: float | None = None) -> dict[str, Any]:
+    """A path, how it ended and how far the part came; error: of its end [m], where it is estimated."""
     line = _curve(path)
     line = thinned(line, SEEN * extent(line))
     return {
@@ -58,9 +59,27 @@ def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
         "outcome": path.outcome.value,
         "sentence": report.with_micro_signs(path.sentence),
         "distance": quantity_text(path.distance, "m", 4),
+        "error": None if error is None else quantity_text(error, "m", 2),
         "duration": quantity_text(float(path.time[-1]), "s", 3),
         "end": (path.position[-1] * unit.per_si).tolist(),
         "heading": None if path.heading is None else float(path.heading[-1]),
+    }
+
+
+def drift_of(found: Drift, unit: Unit) -> dict[str, Any]:
+    """Where parts go: arrows, places where they stay and where they are lost, and what becomes of them in words."""
+    one = found.maps[0]
+    moves, stays = one.fates == Fate.MOVES, one.fates == Fate.STAYS
+    places, ways = one.starts * unit.per_si, one.arrows(one.speed) * unit.per_si
+    period = quantity_text(one.period, "s")
+    return {
+        "arrows": packed(np.column_stack([places[moves] - ways / 2, places[moves] + ways / 2]), "f4"),
+        "still": packed(places[stays], "f4"),
+        "lost": packed(places[~moves & ~stays], "f4"),
+        "text": report.with_micro_signs(
+            f"Where parts go in a period, {period}{one.later}: {one.text}. Dots: it stays; +: it comes off or leaves."
+        ),
+        "warnings": [f"{text[0].upper()}{text[1:]}." for text in found.warnings()],
     }
 
 

@@ -1,4 +1,4 @@
-"""Quick paths: what is drawn while a field is dragged, exact where that takes milliseconds, else coarser."""
+"""Quick paths: what is drawn while a field is dragged, exact where that is fast, else coarser, or an estimate."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from typing import Final
 
 import numpy as np
 
+from active_surface.app.leaps import leaped
 from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part
 from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
 from particle import AnyDrive, Stopped, SurfaceMotion, Trajectory, stoppable
 
 LIMIT: Final = 0.02  # s after which a path is broken off, and a coarser one is tried in its place
+LEAPING: Final = 0.25  # s, the same of a path with leaps
+SLOW: Final = 3  # of these in a row are broken off: no more are tried until nothing is dragged
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
-LEVELS, SHORTER = 8, 4  # of coarseness: exact, with coarse steps, then each time so many times shorter
+LEVELS, LEAPS, SHORTER = 9, 2, 4  # of coarseness: exact, with coarse steps, leaps, then each time so many times shorter
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
 MOMENT: Final = 1e-9  # s: its path has the cell at the start fitted, which may take longer than LIMIT
@@ -35,6 +38,7 @@ class Quick:
 
     path: Trajectory
     coarse: tuple[str, ...] = ()
+    error: float | None = None  # m, of the end of one that is estimated
 
 
 class QuickPaths:
@@ -44,6 +48,7 @@ class QuickPaths:
         self._plates = plates
         self._coarse = SolvedPlates(keep=4)
         self._level: dict[int, int] = {}  # of coarseness that was quick enough, by the number of actuators
+        self._slow = 0  # paths with leaps that were broken off one after the other
 
     def of(self, case: Case, rest: bool = True) -> Quick | None:
         """The path of a case; None where nothing quick is known, as for a thousand actuators on another plate.
@@ -57,18 +62,28 @@ class QuickPaths:
         law, exact, count = build_friction(case), case.run.tolerance, len(case.actuators)
         moment = case.run.model_copy(update={"duration": MOMENT})
         follow_part(case.model_copy(update={"run": moment}), surface, law)
-        for level in range(0 if rest else self._level.get(count, 0), LEVELS):
+        known = 0 if rest else self._level.get(count, 0)
+        self._slow *= not rest
+        leaping = {min(known, LEAPS)} if self._slow < SLOW else set()  # also where a path was broken off before
+        for level in sorted({*range(known, LEVELS), *leaping}):
+            coarse, self._level[count] = [how] if how else [], level
+            if level == LEAPS:
+                self._slow += 1
+                with suppress(Stopped), _limited(LEAPING):
+                    found, self._slow = leaped(case, surface, law), 0
+                    if found is not None:
+                        coarse.append(f"an estimate by {found.followed} of {found.periods} periods")
+                        return Quick(found.path, tuple(coarse), found.error)
+                continue
             tolerance, duration = exact, case.run.duration
-            coarse = [how] if how else []
             if level > 0:
                 tolerance = max(exact, LOOSE)
                 coarse.append(f"steps to {tolerance:g}")
-            if level > 1:
-                duration /= SHORTER ** (level - 1)
+            if level > LEAPS:
+                duration /= SHORTER ** (level - LEAPS)
                 coarse.append(f"only its first {duration * 1e3:.3g} ms")
             run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
-            self._level[count] = level
-            with suppress(Stopped), _limited():
+            with suppress(Stopped), _limited(LIMIT):
                 return Quick(follow_part(case.model_copy(update={"run": run}), surface, law), tuple(coarse))
         return None
 
@@ -104,10 +119,10 @@ class QuickPaths:
 
 
 @contextmanager
-def _limited() -> Iterator[None]:
-    """Breaks paths in its block off after LIMIT, with Stopped."""
+def _limited(limit: float) -> Iterator[None]:
+    """Breaks paths in its block off after a time [s], with Stopped."""
     stop = np.zeros(1, dtype=np.int64)
-    timer = threading.Timer(LIMIT, stop.__setitem__, (0, 1))
+    timer = threading.Timer(limit, stop.__setitem__, (0, 1))
     timer.daemon = True
     timer.start()
     try:

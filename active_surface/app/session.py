@@ -8,13 +8,15 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
+from active_surface.app.aiming import CHOSEN, Search
 from active_surface.app.answers import Answers, Lanes, Refused, Send
 from active_surface.app.drawn import map_of
 from active_surface.app.full import Full
 from active_surface.app.knobs import ALL, allowed, changes_of, knobs_of
 from active_surface.app.opened import Opened, example_cases, open_example
+from active_surface.steering import Settings
 from coupling import report
-from coupling.case import Case, PlateCase
+from coupling.case import Case, InputError, PlateCase
 
 Message = Mapping[str, Any]
 
@@ -156,13 +158,25 @@ class Session:
         data = await self._lanes.run(self._lanes.full, _picture, self._answers.full)
         self._answers.send({"kind": "picture", "name": f"{self._open.case.name}.png", "bytes": data})
 
+    async def _do_drift(self, message: Message) -> None:
+        """Find where parts go from everywhere, or no more."""
+        self._answers.spawn(self._answers.drift(self._open.case, message.get("on") is True))
+
     async def _do_aim(self, message: Message) -> None:
-        """Search for drives to a target, in m."""
+        """Search for drives to a target, in m, within settings."""
         target = message.get("target")
         numbers = isinstance(target, list) and len(target) == 2 and all(type(c) in (int, float) for c in target)
         if not isinstance(target, list) or not numbers or not all(math.isfinite(c) for c in target):
             raise Refused([("target", "must be two numbers, x and y in m")])
-        self._answers.aim(self._open.case, (float(target[0]), float(target[1])), self._take_drives)
+        given = message.get("settings", {})
+        if not isinstance(given, dict) or not set(given) <= set(CHOSEN):
+            raise Refused([("target", f"settings must be some of {', '.join(CHOSEN)}")])
+        try:
+            settings = Settings.model_validate(given)
+        except InputError as error:
+            raise Refused([("target", f"{field} {text}") for field, text in error.problems]) from None
+        search = Search(self._open.case, (float(target[0]), float(target[1])), settings)
+        self._answers.aim(search, self._take_drives)
 
     async def _do_stop(self, message: Message) -> None:
         """Stop the search."""

@@ -69,6 +69,7 @@ const TAKES = {
     caseData = data;
     for (const id of ["opened", "bar"]) element(id).hidden = false;
     if (first) element("menu").hidden = true;
+    if (first && drifting()) askDrift(false);
     if (first) { RUNS.saved = savedPath = nowPath = null; element("run").hidden = element("trust").hidden = true; element("undo").focus(); }
     element("name").textContent = data.name + (data.changed ? ", changed" : "");
     document.title = `${data.name}: active-surface`;
@@ -89,7 +90,7 @@ const TAKES = {
     if (answer.turn) clearMistakes(); // before its case comes, which keeps what is wrong
     arrived(answer, () => {
       nowPath = { ...pairs(unpack(answer.line)), heading: answer.heading, coarse: answer.coarse, exact: false };
-      for (const id of ["run", "trust"]) element(id).classList.add("old");
+      for (const id of ["run", "trust", "drift-layer", "drift-note"]) element(id).classList.add("old");
       mapData.face = answer.face; // whose sizes may be others
       drawPath();
       if (mapData.face) placeOver();
@@ -120,6 +121,13 @@ const TAKES = {
     await takeRun(answer.data, pageData ? time[shown] : highest(answer.data));
     drawMap();
     document.body.dataset.ready = "run";
+    if (drifting()) askDrift(true); // anew
+  },
+  drift({ text, warnings = [], ...shown }) {
+    element("busy").textContent = "";
+    element("drift-note").classList.remove("old");
+    element("drift-note").textContent = [text, ...warnings].join(" ");
+    drawDrift(shown);
   },
   busy({ stage, done, of }) { element("busy").textContent = of ? `${stage}: ${done} of ${of} …` : `${stage} …`; },
   idle() { element("busy").textContent = ""; },
@@ -138,9 +146,10 @@ const TAKES = {
     setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
     element("picture").disabled = false;
   },
-  search({ done, of, line, heading, away }) {
+  search({ done, of, left, line, heading, away }) {
     beginSearch();
-    if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
+    const time = left < 90 ? `${Math.ceil(left)} s` : `${Math.round(left / 60)} min`;
+    if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths, at most about ${time} left …`;
     if (!line) return;
     nowPath = { ...pairs(unpack(line)), heading, coarse: ["search"], exact: false };
     drawPath();
@@ -170,10 +179,10 @@ function highest(data) {
 
 function take(message) { TAKES[message.kind](message); }
 
-function tellPath({ sentence, distance, duration, coarse, rest }) {
+function tellPath({ sentence, distance, error, duration, coarse, rest }) {
   const linear = coarse.some((text) => text.startsWith("linear theory")); // may be far off
   element("quick").classList.toggle("coarse", coarse.length > 0);
-  element("quick").textContent = linear && rest ? "Computing …" : `${sentence} It is ${distance} from its start after ${duration}.`;
+  element("quick").textContent = linear && rest ? "Computing …" : `${sentence} It is ${distance}${error ? ` (estimate, ±${error})` : ""} from its start after ${duration}.`;
   const follows = rest ? "The exact path is being computed." : "The exact path follows when you let go.";
   element("coarse").textContent = coarse.length ? `Preview: ${coarse.join(", ")}. ${follows}` : "";
 }
@@ -191,6 +200,14 @@ function tellTrust({ trust, warnings }) {
   element("verdict").textContent = `Trust: ${warnings.length || "no"} warning${warnings.length === 1 ? "" : "s"}.`;
   element("trust-figures").textContent = `${trust[0].toUpperCase()}${trust.slice(1)}.`;
   element("warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+function drifting() { return element("drift").getAttribute("aria-pressed") === "true"; }
+
+function askDrift(on) {
+  element("drift").setAttribute("aria-pressed", on);
+  if (!on) TAKES.drift({ text: "" });
+  ask({ do: "drift", on });
 }
 
 // The summary beside that of the saved case; what differs stands out.
@@ -227,8 +244,16 @@ function endSearch() {
   element("busy").textContent = "";
 }
 
+// What drives may be, as far as it is said.
+function aimSettings() {
+  const bounds = (key) => [0, 1].map((k) => element(`aim-${key}-${k}`).value.trim());
+  const given = ["frequency", "stroke"].map((key) => [key, bounds(key)]).filter(([, ends]) => ends.some(Boolean));
+  return { groups: element("aim-groups").value, ...Object.fromEntries(given) };
+}
+
 function setAiming(on) {
   aiming = on;
+  element("aim-options").hidden = !on;
   element("aim").setAttribute("aria-pressed", on);
   element("map-box").classList.toggle("aiming", on);
   target = on ? target ?? [...mapData.start] : null;
@@ -261,10 +286,11 @@ onTarget = (place) => {
   aiming = false;
   element("aim").setAttribute("aria-pressed", false);
   element("map-box").classList.remove("aiming");
+  element("aim-options").hidden = true;
   drawMap();
   beginSearch();
   element("busy").textContent = "Searching …";
-  ask({ do: "aim", target: place.map((c) => c / mapData.perSI) });
+  ask({ do: "aim", target: place.map((c) => c / mapData.perSI), settings: aimSettings() });
 };
 stepShown = (step) => drawHeights(step);
 
@@ -274,6 +300,7 @@ element("menu-button").addEventListener("click", () => {
   else element("menu").hidden = true;
 });
 element("picture").addEventListener("click", () => { element("picture").disabled = true; ask({ do: "picture" }); });
+element("drift").addEventListener("click", () => askDrift(!drifting()));
 element("aim").addEventListener("click", () => setAiming(!aiming));
 element("chosen").addEventListener("change", (event) => onPick(event.target.value));
 element("save").addEventListener("click", () => {

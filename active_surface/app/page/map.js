@@ -57,6 +57,21 @@ function drawPath() {
   if (last >= 0) put(element("end"), [x[last], y[last]], nowPath.heading);
 }
 
+// Where parts go: arrows, dots where they stay and + where they are lost; nothing: none.
+function drawDrift({ arrows, still, lost }) {
+  const places = (packed) => { const { x, y } = packed ? pairs(unpack(packed)) : NOWHERE; return Array.from(x, (c, k) => [c, -y[k]]); };
+  const size = mapWidth() / 150, dots = (list, mark) => list.map(([x, y]) => `M${x},${y}${mark}`).join("");
+  const lines = [], ends = places(arrows);
+  for (let k = 0; k < ends.length; k += 2) {
+    const [[a, b], [x, y]] = ends.slice(k, k + 2), [u, v] = [(x - a) / 4, (y - b) / 4];
+    lines.push(`M${a},${b}L${x},${y}M${x - u - v / 1.5},${y - v + u / 1.5}L${x},${y}L${x - u + v / 1.5},${y - v - u / 1.5}`);
+  }
+  element("drift-arrows").setAttribute("d", lines.join(""));
+  element("drift-still").setAttribute("d", dots(places(still), "h0"));
+  element("drift-lost").setAttribute("d", dots(places(lost), `m${-size},0h${2 * size}m${-size},${-size}v${2 * size}`));
+  element("drift-layer").classList.remove("old");
+}
+
 // The surface at the moment of the clock, and the part there.
 function drawHeights(step = shown) {
   const blank = !pageData || !mapData || !nowPath?.exact;

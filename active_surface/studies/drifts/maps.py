@@ -11,13 +11,15 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.studies.drifts.basins import Basin, Basins, Field, basins_of
+from active_surface.studies.drifts.basins import Basin, Basins, Fate, Field, basins_of
 from common import count, percent, quantity
 from meshes import Outline
 
 NAMED: Final = 3  # ends, in words
 FINE: Final = 0.01  # of the spacing: the digits of places in words
 FAR: Final = 0.5  # of the way of runs, or of their number
+DEEP: Final = 30.0  # times the smallest speed whose arrow is longer than the shortest
+LENGTHS: Final = 0.35, 0.95  # of the spacing: those of the shortest and longest arrows
 NONE: Final = math.nan
 SLIDING: Final = 0.05  # share of the starts: of more that still move when the first period ends it is said
 
@@ -84,6 +86,13 @@ class DriftMap:
     def speed(self) -> float:
         """The largest mean speed [m/s] of a part that is kept."""
         return float(np.hypot(*self.moved.T).max(initial=0.0)) / self.period
+
+    def arrows(self, fastest: float) -> FloatArray:
+        """Arrows (k, 2) [m] for the parts that move, longer for speeds over a DEEP-th of the fastest [m/s]."""
+        moved = self.moved[self.fates == Fate.MOVES]
+        length = np.hypot(*moved.T)
+        share = np.clip(1 + np.log(length / (self.period * fastest)) / math.log(DEEP), 0.0, 1.0)
+        return moved * (self.field.spacing * (LENGTHS[0] + (LENGTHS[1] - LENGTHS[0]) * share) / length)[:, None]
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units."""

@@ -16,7 +16,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.drifts.basins import Fate
-from active_surface.studies.drifts.maps import DriftMap
+from active_surface.studies.drifts.maps import DEEP, DriftMap
 from active_surface.studies.drifts.result import Drift
 from common import Drawing, Unit, draw, percent, unit_for
 from coupling.pictures import PlateView, clear_labels, draw_plate, put_keys, put_label, put_title
@@ -28,8 +28,6 @@ MOST_MAPS: Final = 12
 FLATTEST: Final = 0.25  # height over width of a map, at least
 FLAT: Final = 0.5  # below this the bar of speeds lies under the maps
 PART: Final = 0.5  # of the plate's box: where less of it moves, this is what is drawn
-DEEP: Final = 30.0  # times the smallest displacement that has a colour of its own
-LENGTHS: Final = 0.35, 0.95  # of the spacing: those of the shortest and longest arrows
 SHADES: Final = "#cfe3f1", "#fbe3b9", "#d5ead0", "#e6d9ef", "#f2cfe0", "#e3e0d4"  # of ends, the largest shares first
 LOST: Final = {-2: ("#f3b9ae", "from here it comes off in the end"), -3: ("#d9c2ae", "from here it leaves in the end")}
 STAYS: Final = "white"
@@ -109,10 +107,8 @@ def _draw_map(
     keys += draw_plate(axes, PlateView(one.outline, one.places, moving=running), unit, frame, width=width)
     moves = one.fates == Fate.MOVES
     if norm is not None and moves.any():
-        length = np.hypot(*one.moved[moves].T)
-        rates = length / one.period * speed.per_si
-        share = np.clip(np.log(rates / norm.vmin) / math.log(DEEP), 0.0, 1.0)
-        ways = one.moved[moves] / length[:, None] * (size * (LENGTHS[0] + np.ptp(LENGTHS) * share))[:, None]
+        rates = np.hypot(*one.moved[moves].T) / one.period * speed.per_si
+        ways = one.arrows(float(norm.vmax or 0.0) / speed.per_si) * unit.per_si
         look: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1, "pivot": "mid", "units": "xy"}
         heads: dict[str, Any] = {"width": 0.12 * size, "headwidth": 3.6, "headlength": 4.0, "headaxislength": 3.6}
         axes.quiver(*places[moves].T, *ways.T, rates, norm=norm, cmap="viridis_r", zorder=3, **look, **heads)

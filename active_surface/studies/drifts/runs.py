@@ -56,6 +56,7 @@ def drift(
     across: int = ACROSS,
     threads: int | None = None,
     progress: Progress = silent,
+    plates: SolvedPlates | None = None,
 ) -> Drift:
     """Find where the drives of a case carry its part in a period, from rest at places all over the plate.
 
@@ -78,6 +79,8 @@ def drift(
         Paths at a time, by default one a processor.
     progress : Progress
         Reports the progress of a stage.
+    plates : SolvedPlates, optional
+        Plates that are solved already, and where this one is kept.
 
     Returns
     -------
@@ -91,7 +94,7 @@ def drift(
         or its part has no room on the plate.
     """
     running = running_groups(case, groups)
-    plates, case = SolvedPlates(), endless_case(case)
+    plates, case = plates or SolvedPlates(), endless_case(case)
     with one_blas_thread():
         maps = [
             _map(running_case(case, numbers), name, numbers, across, threads, progress, plates)

@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 import pytest
+from app_case import DEVICE
 from page_files import FACED
 
 from coupling import read_case, run_case
@@ -119,6 +120,58 @@ def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
     assert browser.execute_script(places)[1] > began[1]
     browser.find_element(By.ID, "undo").click()
     wait(lambda: browser.execute_script(places) == began)
+
+
+@pytest.mark.parametrize("opened", [DEVICE], indirect=True)
+def test_what_is_drawn_while_a_slider_is_dragged_is_a_marked_estimate_of_the_whole_path(opened):
+    browser, _ = opened
+    said = lambda name: browser.find_element(By.ID, name).text  # noqa: E731
+    ended = said("quick").split("after ")[1]
+    slide = """
+const { slider } = knobs.get("actuators.0.stroke");
+slider.value = 600;
+slider.dispatchEvent(new Event(arguments[0]));
+"""
+    browser.execute_script(slide, "input")
+    wait(lambda: "an estimate by" in said("coarse"))
+    assert said("quick").split("after ")[1] == ended and "(estimate, ±" in said("quick")
+    line = browser.find_element(By.ID, "path-line")
+    assert line.value_of_css_property("stroke-dasharray") != "none"
+    browser.execute_script(slide, "change")
+    wait(lambda: browser.execute_script("return nowPath.exact"))
+    assert "estimate" not in said("quick") and line.value_of_css_property("stroke-dasharray") == "none"
+
+
+def test_where_parts_go_is_drawn_and_marked_as_old_once_something_changes(opened):
+    browser, _ = opened
+    note, arrows, button = (browser.find_element(By.ID, name) for name in ("drift-note", "drift-arrows", "drift"))
+    button.click()
+    wait(lambda: note.text.startswith("Where parts go in a period"))
+    first = arrows.get_attribute("d")
+    assert first.count("M") >= 2
+    browser.execute_script("change({ 'part.mass': '2.1 ug' }, false, performance.now())")
+    wait(lambda: note.get_attribute("class") == "caption old")
+    browser.execute_script("change({ 'part.mass': '1.7 ug' }, true, performance.now())")
+    wait(lambda: note.get_attribute("class") == "caption" and arrows.get_attribute("d") != first)
+    button.click()
+    assert not arrows.get_attribute("d") and not note.text
+
+
+def test_an_aim_has_bounds_and_says_how_long_it_takes_until_it_is_stopped(opened):
+    browser, _ = opened
+    for name, text in (("aim", None), ("aim-frequency-0", "12 mm"), ("aim-frequency-1", "500 Hz")):
+        one = browser.find_element(By.ID, name)
+        one.send_keys(text) if text else one.click()
+    target = '[data-key="target"]'
+    browser.find_element(By.CSS_SELECTOR, target).send_keys(Keys.ARROW_RIGHT, Keys.ENTER)
+    wait(lambda: "12 mm" in browser.find_element(By.ID, "mistakes").text)
+    browser.find_element(By.ID, "aim").click()
+    browser.execute_script("element('aim-frequency-0').value = '200 Hz'; element('aim-groups').value = 'all'")
+    browser.find_element(By.CSS_SELECTOR, target).send_keys(Keys.ARROW_RIGHT, Keys.ENTER)
+    wait(lambda: "left" in browser.find_element(By.ID, "busy").text or browser.execute_script("return !searching"))
+    browser.execute_script("ask({ do: 'stop' })")
+    wait(lambda: browser.execute_script("return !searching"))
+    assert browser.find_element(By.ID, "note").get_attribute("textContent")
 
 
 MAPPED = """

@@ -1,14 +1,17 @@
 """A tab without a browser: messages of the page, and what it gets for them."""
 
 import asyncio
+import base64
 from itertools import count
 
+import numpy as np
 import pytest
 from app_case import CASE
 
-from active_surface.app.answers import Lanes
+from active_surface.app.answers import ACROSS, Lanes
 from active_surface.app.opened import MAX_STEPS, open_case
 from active_surface.app.session import Session
+from active_surface.studies.drifts import Fate, drift
 from coupling import read_case, run_case
 
 pytestmark = pytest.mark.compiled
@@ -51,6 +54,14 @@ class Page:
 def path(tmp_path):
     (tmp_path / "mine.toml").write_text(CASE)
     return tmp_path / "mine.toml"
+
+
+def ends(page):
+    return page.session._answers._search.settings.frequency
+
+
+def floats(packed):
+    return np.frombuffer(base64.b64decode(packed["bytes"]), "<f4")
 
 
 def case_of(page):
@@ -104,6 +115,16 @@ NONSENSE = [
     *({"do": "select", "actuator": "9"}, {"do": "select"}),
     *({"do": "save", "name": name} for name in (None, "../x.toml", "/tmp/x.toml", ".toml", "x.txt")),
     *({"do": "aim", "target": target} for target in (None, [1e400, 0], [True, 0], [1.0, 1.0])),
+    *(
+        {"do": "aim", "target": [1e-5, 0], "settings": settings}
+        for settings in (
+            3,
+            {"paths": 3},
+            {"groups": "some"},
+            {"stroke": ["", "9 um"]},
+            {"frequency": ["2 kHz", "1 kHz"]},
+        )
+    ),
 ]
 
 
@@ -225,8 +246,10 @@ def test_a_search_is_watched_stopped_and_its_drives_taken(path):
     async def work():
         async with Page(path) as page:
             await page.wait("run")
-            page.session.take({"do": "aim", "target": [70e-6, 26e-6]})
-            await page.wait("search")
+            settings = {"groups": "all", "frequency": ["850 Hz", "950 Hz"]}
+            page.session.take({"do": "aim", "target": [70e-6, 26e-6], "settings": settings})
+            assert (await page.wait("search"))["left"] >= 0
+            assert (page.session._answers._search.settings.groups, ends(page)) == ("all", (850.0, 950.0))
             for other in (
                 {"do": "aim", "target": [1e-5, 0]},
                 {"do": "set", "changes": {"part.mass": "1 ug"}},
@@ -258,3 +281,31 @@ def test_two_tabs_do_not_disturb_each_other(path):
             other.close()
 
     asyncio.run(work())
+
+
+def test_where_parts_go_is_found_until_the_case_changes_or_nobody_wants_it(path):
+    async def watch():
+        async with Page(path) as page:
+            await page.wait("run")
+            before = len(page.got)
+            for on in (True, False):  # before it has begun
+                page.session.take({"do": "drift", "on": on})
+            await page.wait("idle", before)
+            shown = await page.do("drift", do="drift", on=True)
+            assert len([one for one in page.got if one["kind"] == "drift"]) == 1
+            found = drift(case_of(page), across=ACROSS).maps[0]
+            arrows = floats(shown["arrows"]).reshape(-1, 2, 2)
+            moves = found.fates == Fate.MOVES
+            assert moves.any() and not moves.all()
+            np.testing.assert_allclose(arrows.mean(axis=1), 1e6 * found.starts[moves], rtol=1e-4, atol=1e-2)
+            ways = arrows[:, 1] - arrows[:, 0]
+            assert ((ways * found.moved[moves]).sum(axis=1) > 0).all()
+            assert (len(floats(shown["still"])) / 2, len(floats(shown["lost"])) / 2) == (
+                (found.fates == Fate.STAYS).sum(),
+                (found.fates > Fate.MOVES).sum(),
+            )
+            page.session.take({"do": "drift", "on": True})
+            await page.set("run", actuators__0__stroke="50 um")
+            assert len([one for one in page.got if one["kind"] == "drift"]) == 1
+
+    asyncio.run(watch())
