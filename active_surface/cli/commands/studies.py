@@ -124,15 +124,16 @@ def drift(
     """Show where the drives of CASE carry its part from everywhere on the plate, and where it ends.
 
     Follows the part from rest at each place over one period of the drives, and from there on by the map of these; says
-    how far runs end from that. Writes NAME.drift.nc and NAME.drift.png.
+    how far runs end from that. Writes NAME.drift.nc, NAME.drift.png and the page NAME.drift.html.
     """
     parsed = read(case)
     from active_surface.studies.drifts import ACROSS, STAGES, running_groups
     from active_surface.studies.drifts import drift as find
+    from active_surface.views import write_drift_page
 
     with stages(STAGES * len(running_groups(parsed, groups))) as bar:
         found = find(parsed, groups, ACROSS if across is None else across, threads, bar)
-        files = found.write(output)
+        files = *found.write(output), write_drift_page(found, output / f"{found.case.name}.drift.html")
     return Answer(found.figures(), found.lines(), found.warnings(), files)
 
 

@@ -139,11 +139,16 @@ def _draw_ends(axes: Axes, one: DriftMap, unit: Unit) -> list[Artist]:
     return keys
 
 
+def shades(one: DriftMap) -> dict[int, str]:
+    """The colour of each number in `one.basins.of_start`."""
+    ends = {k: SHADES[min(k, len(SHADES) - 1)] for k in range(len(one.basins.ends))}
+    return ends | {-1: STAYS} | {k: colour for k, (colour, _) in LOST.items()}
+
+
 def _shade(axes: Axes, one: DriftMap, unit: Unit) -> list[Artist]:
     """Colour each place by where a part from there ends; return keys."""
     numbers, field = one.basins.of_start, one.field
-    colours = {k: SHADES[min(k, len(SHADES) - 1)] for k in range(len(one.basins.ends))} | {-1: STAYS}
-    colours |= {k: colour for k, (colour, _) in LOST.items()}
+    colours = shades(one)
     there = field.numbers >= 0
     grid = np.zeros((*there.shape, 4))
     grid[there] = [to_rgba(colours[k]) for k in numbers[field.numbers[there]].tolist()]

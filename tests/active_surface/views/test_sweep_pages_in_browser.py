@@ -1,10 +1,12 @@
-"""Pages of sweeps in a real browser: Chromium clicks cells and presses keys, and looks at pixels and labels."""
+"""Pages of sweeps and drifts in a real browser: Chromium clicks, presses keys, and looks at pixels and labels."""
 
 import numpy as np
 import pytest
 from page_files import FACED, TURNS
 
 from active_surface.studies import read_study, run_study
+from active_surface.studies.drifts import drift
+from active_surface.views.pages.drift_page import write_drift_page
 from active_surface.views.pages.study_page import write_study_page
 from coupling import read_case, run_case
 
@@ -60,6 +62,7 @@ def pages(tmp_path_factory):
         "none": write_study_page(study, found.dataset, folder / "none.html", 0),
         "repeats": repeated(folder),
         "faced": turning(folder),
+        "drift": write_drift_page(drift(read_case(folder / "base.toml"), "each", 12), folder / "drift.html"),
     }
 
 
@@ -175,3 +178,20 @@ def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refu
     wait(lambda: readout(browser)["frequency"] == "10.00050 kHz")
     wait(lambda: browser.execute_script(names) == ["actuator", "path", "ends of 3 starts", "start", "end"])
     assert picker.get_attribute("aria-valuetext") == "10.00050 kHz"
+
+
+def test_a_click_on_a_place_shows_where_a_part_from_there_ends_and_each_group_has_its_map(open_page):
+    browser = open_page("drift")
+    x, y, place, end = browser.execute_script(
+        "element('map').scrollIntoView(); const k = shown.moving.find((one) => one !== chosen);"
+        "return [starts.x[k], starts.y[k], placeSaid(starts, k), ending(k)]"
+    )
+    assert readout(browser)["from rest at"] != place
+    chart, text = browser.find_element(By.ID, "map"), browser.find_element(By.ID, "map-caption").text
+    ActionChains(browser).move_to_element_with_offset(chart, *cell_at(browser, x, y)).pause(0.5).click().perform()
+    wait(lambda: readout(browser)["from rest at"] == place)
+    assert readout(browser)["in the end"] == end
+    before = pixels(browser, "map")
+    browser.find_element(By.ID, "group").send_keys(Keys.ARROW_DOWN)
+    wait(lambda: browser.find_element(By.ID, "map-caption").text != text)
+    wait(lambda: changed(before, pixels(browser, "map")) > 1e-3)
