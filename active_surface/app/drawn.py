@@ -79,7 +79,7 @@ def drift_of(found: Drift, unit: Unit) -> dict[str, Any]:
         "text": report.with_micro_signs(
             f"Where parts go in a period, {period}{one.later}: {one.text}. Dots: it stays; +: it comes off or leaves."
         ),
-        "warnings": [f"{text[0].upper()}{text[1:]}." for text in found.warnings()],
+        "warnings": found.warnings(),
     }
 
 

@@ -52,9 +52,9 @@ class Drift:
         found = []
         if self.case.part.face is not None and any(one.turned.any() for one in self.maps):
             heading = f"{math.degrees(self.case.part.heading):g} deg"
-            found.append(f"the part turns, but the map's periods begin at the heading of the case, {heading}")
+            found.append(f"The part turns, but the map's periods begin at the heading of the case, {heading}.")
         if wrong := [one.name for one in self.maps if one.check.is_far]:
-            found.append(f"runs go elsewhere: where parts end, of {joined(wrong)}, is an indication at best")
+            found.append(f"Runs end elsewhere than the map says ({joined(wrong)}): its ends are an indication at best.")
         return found
 
     def dataset(self) -> xarray.Dataset:

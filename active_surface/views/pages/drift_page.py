@@ -27,7 +27,7 @@ def write_drift_page(found: Drift, path: Path) -> Path:
         "name": escape(case.name),
         "title": escape(title),
         "sentence": escape(f"{report.device(case)}. A click on a place shows where a part from there ends."),
-        "warnings": notes_of([f"{text[0].upper()}{text[1:]}." for text in found.warnings()]),
+        "warnings": notes_of(found.warnings()),
         "rows": rows_of(found.lines()),
         "case": escape(case.source or case.model_dump_json(indent=2)),
     }
