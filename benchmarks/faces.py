@@ -89,13 +89,13 @@ def face() -> tuple[str, str, str]:
 def film() -> list[tuple[str, str, str]]:
     """A path on a film of air over that with drag alone, in a room's air and thin."""
     case, rows = read_case(EXAMPLES / "transport.toml").vary({"run.duration": DURATION}), []
-    surface = build_surface(case)
-    for name, air in {"thin air, wide": THIN, "a room's air, bowed": AIR}.items():
-        part = {"size": SIDE, "centre_height": SIDE / 2}
-        ways = [path(point(case, **part, air={**air, "film": has}), surface) for has in (True, False)]
-        off = apart(ways[0](), ways[1]())
-        assert off < BOUND or air is not THIN, f"a film of thin air moves the end by {off:.1e} of the way"
-        rows.append((f"a film, {name}", "drag alone", f"{turns(*ways, ROUNDS)} | {off:.0e}"))
+    surface, square = build_surface(case), {"size": SIDE, "centre_height": SIDE / 2}
+    for under, one in {"a film": point(case, **square, air=AIR), "a film under a face": case}.items():
+        for name, air in {"thin air, wide": THIN, "a room's air, bowed": AIR}.items():
+            ways = [path(one.vary({"air": {**air, "film": has}}), surface) for has in (True, False)]
+            off = apart(ways[0](), ways[1]())
+            assert off < BOUND or air is not THIN, f"a film of thin air moves the end by {off:.1e} of the way"
+            rows.append((f"{under}, {name}", "drag alone", f"{turns(*ways, ROUNDS)} | {off:.0e}"))
     return rows
 
 

@@ -107,6 +107,7 @@ def _without_film(case: Case, scene: Scene, friction: Contact) -> Trajectory:
         run.gravity,
         run.tolerance,
         after_detachment=run.after_detachment,
+        after_tipping=run.after_tipping,
     )
 
 

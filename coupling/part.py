@@ -105,8 +105,8 @@ def air_of(case: Case) -> Air:
 
 
 def film_of(case: Case) -> Film | None:
-    """The film of air under the part; None: the path has none."""
-    if case.air is None or not case.air.film:
+    """The film of air under a point; None: the path has none, or the part has a face."""
+    if case.air is None or not case.air.film or case.part.face is not None:
         return None
     assert case.footprint is not None
     return Film(air_of(case), case.footprint)
@@ -143,6 +143,7 @@ def build_part(case: Case, position: tuple[float, float] | None = None) -> Micro
             centre_height=p.centre_height,
             pressure=p.pressure,
             drag=drag_of(case),
+            film=air_of(case) if case.air is not None and case.air.film else None,
         )
     return build_point(case, place)
 

@@ -112,7 +112,7 @@ class Flat(Film):
         layer = super().layer(friction)
         means, products = layer.means.copy(), layer.products.copy()
         means[1:] = products[1:] = 0.0
-        return layer._replace(means=means, products=products)
+        return layer._replace(means=means, products=products, places=layer.places * [0, 0, 0, 1])
 
 
 def quick_start() -> None:

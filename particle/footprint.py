@@ -150,6 +150,12 @@ class Footprint:
         return total * self.area * self.reach**2, widened / total * self.reach**2
 
     @property
+    def is_rectangle(self) -> bool:
+        """Whether it is a rectangle with sides along x and y."""
+        size = np.abs(self.corners)
+        return self._is_parallelogram and bool((np.ptp(size, axis=0) <= FLAT * self.reach).all())
+
+    @property
     def _is_parallelogram(self) -> bool:
         return len(self.corners) == 4 and np.abs(self.corners[0] + self.corners[2]).max() <= FLAT * self.reach
 

@@ -164,7 +164,7 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
     def contact(rows: Rows) -> Rows:
         """Where contact and centre of mass are at rows of the path, and what acts there."""
         memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
-        return face_states(surface.record, request, face, memory, rows)
+        return face_states(surface.record, request, face, memory, rows, np.zeros((0, 3)))
 
     trajectory = trajectory_of(surface, request, computed, sampler, contact, face)
     if trajectory.outcome is Outcome.STUCK:

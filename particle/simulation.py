@@ -160,9 +160,11 @@ def path_of(
     stop: IntArray | None,
 ) -> Trajectory | None:
     """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1."""
-    if isinstance(part, Micropart) and part.film is not None:
-        return find_film_path(surface, request, part.film, friction, stop)
-    return find_path(surface, request, tolerance, stop, face_of(part, tolerance, after_tipping == "stop"))
+    face = face_of(part, tolerance, after_tipping == "stop")
+    film = Film(part.film, part.footprint) if isinstance(part, Body) and part.film else getattr(part, "film", None)
+    if film:
+        return find_film_path(surface, request, film, friction, stop, face)
+    return find_path(surface, request, tolerance, stop, face)
 
 
 def face_of(part: Micropart | Body, tolerance: float, tips: bool = True) -> Face | None:
@@ -192,8 +194,13 @@ def is_law(friction: object) -> TypeGuard[Contact]:
 
 def law_faults(part: Micropart | Body, friction: Contact, after_tipping: str = "stop") -> list[str]:
     """What is wrong with a friction law for a part."""
-    if isinstance(part, Micropart) and part.film and is_law(friction) and friction.pull_off == 0:
+    film = getattr(part, "film", None)
+    if film and is_law(friction) and friction.pull_off == 0:
         return ["Input friction of simulate must have a pull-off force on a film of air, whose gap follows from it"]
+    if isinstance(part, Body) and film and is_law(friction) and friction.law.kind == LOCAL:
+        return ["Input friction of simulate must not be a LocalContact with the film of a Body"]
+    if isinstance(part, Body) and film and part.pressure == "linear" and after_tipping != "stop":
+        return [f"Input after_tipping of simulate must be 'stop' with the film of a Body; got {after_tipping!r}"]
     if not is_law(friction) or friction.law.kind != LOCAL:
         return []
     while isinstance(friction, ScaledFriction):

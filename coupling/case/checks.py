@@ -123,9 +123,8 @@ def _air(tables: CaseTables, parts: Mapping[Location, PartCase], friction: Frict
         return
     if tables.air.film and tables.air.pressure == 0:
         yield ("air", "film"), "must be false in a vacuum"
-    elif tables.air.film and any(part.face for part in parts.values()):
-        where = "[[parts]]" if tables.parts else "[part]"
-        yield ("air", "film"), f"must be false with a footprint in {where}: only a point's square has a film"
+    elif tables.air.film:
+        yield from _film(tables, parts)
     if tables.air.pressure == 0:
         return
     if tables.air.film and isinstance(friction, CoulombCase) and friction.adhesion == 0:
@@ -140,6 +139,20 @@ def _air(tables: CaseTables, parts: Mapping[Location, PartCase], friction: Frict
         for place in (place for place, part in parts.items() if part.face is None and part.size is None):
             must = 'it must be a length such as "100 um", the side of the part'
             yield (*place, "size"), f"is missing; with [air], unless that is a vacuum, {must}"
+
+
+def _film(tables: CaseTables, parts: Mapping[Location, PartCase]) -> Iterator[Mistake]:
+    """Yield what does not go with a film under a face."""
+    where, faces = "[[parts]]" if tables.parts else "[part]", [part for part in parts.values() if part.face]
+    if any(part.footprint == "polygon" for part in faces):
+        yield (
+            ("air", "film"),
+            f"must be false with a polygon in {where}: only squares, rectangles and discs have a film",
+        )
+    if any(part.local_contact for part in faces):
+        yield ("air", "film"), f"must be false with a footprint and local_contact = true in {where}"
+    if tables.run.after_tipping == "ignore" and any(part.pressure == "linear" for part in faces):
+        yield ("run", "after_tipping"), f'must be "stop" with a film of air under a footprint in {where}; got "ignore"'
 
 
 def _jumps(tables: CaseTables, parts: Mapping[Location, PartCase], made: Sequence[ActuatorCase]) -> Iterable[Mistake]:

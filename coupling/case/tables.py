@@ -64,7 +64,7 @@ class AirCase(Table):
     bow: Length = Field(default=0.0, ge=0, le=1e-4, examples=["0.5 um"])
     """What a face that is not flat, or stands on feet, adds to the gap under it."""
     film: StrictBool = False
-    """Whether the path includes the film of air under a point's square, which bears load, besides its drag."""
+    """Whether the path includes the film of air under a point's square, a rectangle or a disc, which bears load."""
 
 
 def _alternatives(schema: dict[str, Any]) -> None:

@@ -129,13 +129,14 @@ def _of_air(s: Summary) -> Iterator[str]:
     if air.included == "film":
         if air.sag_over_gap > FLAT and not (isinstance(s, PlateSummary) and s.local_contact):
             yield (
-                f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, which is "
-                f"taken as uniform; that holds up to about {FLAT}, and far above it the direction of the way alone. "
-                'model = "kogut-etsion" with local_contact = true follows the bend.'
+                f"The plate sags under the part by up to {air.sag_over_gap:.2g} times the gap of the film, and "
+                f"asperities are taken to meet a plane; that holds up to about {FLAT}, and far above it at most for "
+                "the direction of the way."
+                + (' model = "kogut-etsion" with local_contact = true follows the bend.' if s.turned is None else "")
             )
         return
     at, face = f"At {quantity(air.pressure, 'Pa', 4)} ", s.turned is not None
-    remedy = f" [air] with film = true includes it{' for a part without a footprint' * face}."
+    remedy = f" [air] with film = true includes it{' under a rectangle or disc without local_contact' * face}."
     remedy = remedy if s.scheme == "events" else ""
     if air.load_share is not None and air.load_share > MAX_AIR:
         off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"

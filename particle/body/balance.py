@@ -68,6 +68,12 @@ class Balance(Press):
     rates: Annotated[FloatArray, 3]  # u
     slip: Annotated[FloatArray, 3]  # the face's planar twist
     load: Annotated[FloatArray, 3]  # N + squeeze, M_1, M_2
+    on_film: int  # 1 on a film of air, which bears a share of the load; these five are of it
+    at: float  # N, a load
+    limit: float  # N, friction's limit at that load
+    by_load: float  # by which the limit changes with the load, which the film shares
+    by_borne: float  # by which it changes with what asperities bear
+    drag: float  # N s/m
 
 
 @device_no_arrays
@@ -315,6 +321,15 @@ def find_rates(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Ba
 
 
 @device_no_arrays
+def limits(part: Part, b: Balance) -> tuple[float, float, float]:
+    """Friction's limit Q [N] under b.load, by which it changes with the load, and with what asperities bear."""
+    if b.on_film == 1:
+        return b.limit + b.by_load * (b.load[0] - b.at), b.by_load, b.by_borne
+    slope = friction_slope(part.law, b.load[0])
+    return friction_limit(part.law, b.load[0]), slope, slope
+
+
+@device_no_arrays
 def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b: Balance) -> None:
     """The wrench of friction while sliding against the slip s under b.load, and by what it changes, into b.friction.
 
@@ -324,14 +339,15 @@ def fill_friction(part: Part, face: Face, s_1: float, s_2: float, s_3: float, b:
         fill_pressed_friction(part.law, face, s_1, s_2, s_3, b, b.wrenches, b.friction)
         return
     load, w, s = b.load, b.wrenches, face.unmoments
-    limit, slope = friction_limit(part.law, load[0]) / face.area, friction_slope(part.law, load[0]) / face.area
+    limit, by_load, slope = limits(part, b)
+    limit, by_load, slope = limit / face.area, by_load / face.area, slope / face.area
     for i in range(3):
         by_m_1 = by_m_2 = 0.0
         if face.linear:
             by_m_1 = slope * (w[i, 1] * s[0, 1] + w[i, 2] * s[1, 1])
             by_m_2 = -slope * (w[i, 1] * s[0, 0] + w[i, 2] * s[1, 0])
         b.friction[i, 0] = limit * w[i, 0] + by_m_1 * load[1] + by_m_2 * load[2]
-        b.friction[i, 1], b.friction[i, 2], b.friction[i, 3] = slope * w[i, 0], by_m_1, by_m_2
+        b.friction[i, 1], b.friction[i, 2], b.friction[i, 3] = by_load * w[i, 0], by_m_1, by_m_2
 
 
 @device_no_arrays
@@ -343,7 +359,7 @@ def _fill_system(part: Part, face: Face, b: Balance) -> None:
     f, w, load, s = b.forces, b.friction, b.load, face.unmoments
     spread = (s[0, 0] + s[1, 1]) / (s[0, 0] * s[1, 1] - s[0, 1] * s[1, 0])
     for i in range(3):
-        right = -part.drag * b.slip[i] * (spread if i == 2 else 1.0)
+        right = -(part.drag + b.drag) * b.slip[i] * (spread if i == 2 else 1.0)
         right += w[i, 0] - w[i, 1] * (load[0] - part.squeeze) - w[i, 2] * load[1] - w[i, 3] * load[2]
         by_load, by_m_1, by_m_2 = w[i, 1] + b.workless[i, 0], w[i, 2] + b.workless[i, 1], w[i, 3] + b.workless[i, 2]
         for j in range(4):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from particle.air import Air
 from particle.body.face import Face
 from particle.checks import finite, not_negative, positive, refuse
 from particle.footprint import Footprint
@@ -43,6 +44,7 @@ class Body:
     inertia: ArrayLike | None = None  # kg m^2, (3,) or (3, 3) about the centre of mass; by default that of the block
     pressure: str = "linear"  # under the face: "linear" bears its moments, "uniform" is the same everywhere
     drag: float = 0.0  # N s/m, of the air under it: a force against its slip (`Air.drag`)
+    film: Air | None = None  # of a film under it, which bears load and has a drag of its own, in place of `drag`
 
     def __post_init__(self) -> None:
         numbers = {"heading": (self.heading, "rad"), "spin": (self.spin, "rad/s")}
@@ -62,6 +64,9 @@ class Body:
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
             ],
         )
+        known = self.footprint.radius > 0 or self.footprint.is_rectangle
+        film = self.film is None or (known and isinstance(self.film, Air) and self.film.pressure > 0)
+        refuse("Body", [(film, "film", "None, or an Air of a positive pressure under a rectangle or disc", self.film)])
         volume = self.footprint.area * self.thickness
         masses = {name: value for name in ("mass", "density") if not _missing(value := getattr(self, name))}
         wanted = "given, or its density in its place, but not both"

@@ -15,8 +15,8 @@ from particle.body.rest import leaves_rest
 from particle.body.slide import begin_slip, slide
 from particle.body.state import base_at, contact_margin, end_reason, fill_row, rim_margin, settle
 from particle.events import PathRecord, Request, last_row, note, write
-from particle.events.mechanics import Counts, Now
-from particle.jit import inlined, jit
+from particle.events.mechanics import Counts, Now, Part
+from particle.jit import device_no_arrays, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface
 
@@ -50,9 +50,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
         new_span = now.time >= now.span_end
         crosses = request.jumps and new_span and counts.spans > 0
         if crosses:
-            settle(part, face, memory, state, now.time)
-            for k in range(6):
-                memory.step[0].carried[k] = memory.balance[0].carried[k]
+            keep_carried(part, face, memory, now.time)
         bridged = request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)
         x, y, heading = state[X], state[Y], state[HEADING]
         cell, end = enter_all(
@@ -68,7 +66,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
         if now.span_end <= now.time:
             now.verdict = Verdict.WORK_LIMIT
             break
-        if crosses and _jumps(surface, request, face, memory):
+        if crosses and jumps(surface, request, face, memory):
             now.verdict = Verdict.JUMPS
             break
         if new_span:
@@ -102,8 +100,16 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     return record
 
 
-@inlined
-def _jumps(surface: Surface, request: Request, face: Face, memory: Memory) -> bool:
+@device_no_arrays
+def keep_carried(part: Part, face: Face, memory: Memory, time: float) -> None:
+    """The twist by which the surface carries a face as a span ends into memory.step[0].carried."""
+    settle(part, face, memory, memory.step[0].state, time)
+    for k in range(6):
+        memory.step[0].carried[k] = memory.balance[0].carried[k]
+
+
+@device_no_arrays
+def jumps(surface: Surface, request: Request, face: Face, memory: Memory) -> bool:
     """Whether the surface's velocity under the face jumps from memory.step[0].carried as a span begins."""
     settle(request.part, face, memory, memory.step[0].state, memory.now[0].time)
     largest = 0.0

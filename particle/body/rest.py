@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from particle.body.averages import TT, T, enter_all
-from particle.body.balance import Balance, Base, fill_forces, least_pressure, set_load
+from particle.body.balance import Balance, Base, fill_forces, least_pressure, limits, set_load
 from particle.body.face import Face
 from particle.body.limit import Search, gauge, needed
 from particle.body.memory import HEADING, Memory, X, Y
@@ -21,7 +21,7 @@ from particle.body.press import pull_to_end
 from particle.body.state import base_at, contact_margin, settle
 from particle.events import Request
 from particle.events.mechanics import Part
-from particle.friction import LOCAL, friction_limit, friction_slope
+from particle.friction import LOCAL
 from particle.jit import device_no_arrays, inlined, jit
 from particle.surface import Surface
 from particle.types import FloatArray
@@ -56,8 +56,8 @@ def quick_gauge(part: Part, face: Face, b: Balance, s: Search) -> float:
         return gauge(part, face, b, s)
     turn = s.needed[2] / face.arm
     force = math.sqrt(s.needed[0] * s.needed[0] + s.needed[1] * s.needed[1] + turn * turn)
-    load = b.load[0]
-    least = friction_limit(part.law, load) + friction_slope(part.law, load) * (least_pressure(face, b) - load)
+    limit, _, slope = limits(part, b)
+    least = limit + slope * (least_pressure(face, b) - b.load[0])
     if force < SAFE * INNER * part.law.static_ratio * least:
         return force / (INNER * part.law.static_ratio * least)
     return gauge(part, face, b, s)

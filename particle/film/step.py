@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from particle.body import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A
+from particle.body import AHEAD, AT_START, DIFFERENCE, NODES, STAGES, A, Face
 from particle.events import Request
 from particle.film.film import Layer
 from particle.film.gap import pumped
-from particle.film.memory import CONTENTS, PUMPED, RATES, SOLVED, STATE, V_X, Memory, X, Y, Z
-from particle.film.state import fill_rate
+from particle.film.memory import CONTENTS, HEADING, PUMPED, RATES, SOLVED, SPIN, STATE, V_X, V_Y, Memory, X, Z
+from particle.film.state import fill_rate, within
 from particle.jit import device_no_arrays
 from particle.modes import Mode
-from particle.surface import Surface, within_cell
+from particle.surface import Surface
 from particle.types import FloatArray
 
 PASSES, FOUND = 10, 1e-3  # FOUND: of what a step may be off by, how exactly its stages are found
@@ -40,21 +40,24 @@ TO = np.ascontiguousarray(_eigen[1][:, _half] * np.where(_eigen[0][_half].imag >
 
 
 @device_no_arrays
-def begin_step(surface: Surface, request: Request, layer: Layer, memory: Memory) -> None:
+def begin_step(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory) -> None:
     """The rate at the state, and by how much it changes with it, into memory.step[0]."""
-    step, now, first = memory.step[0], memory.now[0], first_of(memory)
+    step, now, first, last = memory.step[0], memory.now[0], first_of(memory), last_of(face, memory)
     state, nudged, g = step.state, step.end, memory.gap[0]
     for i in range(STATE):
         nudged[i] = state[i]
     memory.gap[1] = g
-    for j in range(max(first, V_X), SOLVED):
+    for j in range(max(first, V_X), last):
+        if j == HEADING:
+            continue
         size = NUDGE * g.width
-        if j < CONTENTS:
+        if j < CONTENTS or j == SPIN:
             size = NUDGE * (g.speed if g.speed > 0.0 else surface.size / request.stroke_time)
+            size /= arm_of(face) if j == SPIN else 1.0
         nudged[j] = state[j] + size
-        fill_rate(request, layer, memory, nudged, now.time, now.mode, memory.gap[1], step.rates[0])
+        fill_rate(request, layer, face, memory, nudged, now.time, now.mode, memory.gap[1], step.rates[0])
         nudged[j] = state[j]
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             step.turns[i, j] = (step.rates[0, i] - step.rate[i]) / size
 
 
@@ -65,16 +68,32 @@ def first_of(memory: Memory) -> int:
 
 
 @device_no_arrays
-def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float) -> bool:
+def last_of(face: Face | tuple[()], memory: Memory) -> int:
+    """The first number after those of a state that move."""
+    if len(face) == 0:
+        return HEADING
+    return HEADING if memory.now[0].mode == Mode.RESTING else SOLVED
+
+
+@device_no_arrays
+def arm_of(face: Face | tuple[()]) -> float:
+    """m, by which a turn counts as a distance."""
+    if len(face) == 0:
+        return 1.0
+    return face.arm
+
+
+@device_no_arrays
+def attempt(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float) -> bool:
     """Try a step of h [s], after `begin_step`: its stages and its end; False where they are not found."""
-    step, now, first = memory.step[0], memory.now[0], first_of(memory)
+    step, now, first, last = memory.step[0], memory.now[0], first_of(memory), last_of(face, memory)
     state, stages, rates, time = step.state, step.stages, step.rates, now.time
     powers, start = (STAGES if h <= LONGER * step.before else 1), memory.gap[0]
     for k in range(STAGES):
         t = NODES[k] * h
         for i in range(STATE):
             stages[k, i] = state[i]
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             guess = 0.0
             for j in range(powers - 1, -1, -1):
                 guess = guess * t + step.lead[j, i] / (j + 1)
@@ -85,16 +104,16 @@ def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
         small = min(small, FOUND * RELATIVE * start.speed * request.stroke_time)
     for turn in range(PASSES):
         for k in range(STAGES):
-            if first == X and not within_cell(memory.local, stages[k, X], stages[k, Y]):
+            if first == X and not within(face, memory, stages[k]):
                 return False
-            fill_rate(request, layer, memory, stages[k], time + NODES[k] * h, now.mode, memory.gap[k + 1], rates[k])
             g = memory.gap[k + 1]
+            fill_rate(request, layer, face, memory, stages[k], time + NODES[k] * h, now.mode, g, rates[k])
             stages[k, Z] = g.z
             if not abs(g.z - start.z) < FOLD[0] * abs(start.z) + FOLD[1]:
                 return False
             if now.mode == Mode.SLIDING and not g.speed > 0.0:
                 return False
-        largest = _newton(surface, request, layer, memory, h, first)
+        largest = _newton(surface, request, layer, face, memory, h)
         if not largest < 1e3 * surface.size:
             return False
         if (min(1.0, largest / before) if turn > 0 else 1.0) * largest <= small:
@@ -102,17 +121,19 @@ def attempt(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
         if turn == PASSES - 1 or largest > 2.0 * before:
             return False
         before = largest
-    _finish(layer, memory, h, first)
+    _finish(layer, memory, h, first, last)
     return True
 
 
 @device_no_arrays
-def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float, first: int) -> float:
+def _newton(
+    surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float
+) -> float:
     """One of Newton's steps of the stages; its largest change as a distance [m]."""
-    step, m, ahead = memory.step[0], memory.system, memory.ahead
-    state, stages, n = step.state, step.stages, SOLVED - first
+    step, m, ahead, first, last = memory.step[0], memory.system, memory.ahead, first_of(memory), last_of(face, memory)
+    state, stages, n = step.state, step.stages, last - first
     for k in range(STAGES):
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             step.changes[k, i] = 0.0
             step.residuals[k, i] = step.rates[k, i]
             for j in range(STAGES):
@@ -132,9 +153,9 @@ def _newton(surface: Surface, request: Request, layer: Layer, memory: Memory, h:
                 step.changes[k, first + i] += (TO[k, root] * ahead[i]).real
     largest = 0.0
     for k in range(STAGES):
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             stages[k, i] += step.changes[k, i]
-            largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, layer, i))
+            largest = max(largest, abs(step.changes[k, i]) * _unit(surface, request, layer, face, i))
     return largest
 
 
@@ -166,30 +187,31 @@ def _eliminate(m: Any, out: Any) -> bool:
 
 
 @device_no_arrays
-def _unit(surface: Surface, request: Request, layer: Layer, i: int) -> float:
+def _unit(surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], i: int) -> float:
     """What an error of a number of the state counts as a distance [m] over it.
 
     A velocity counts as what it moves the part by in the shortest stroke, a roughness of gap as a 50th of the surface's
-    size.
+    size, a turn at the mean distance from the face's origin.
     """
-    if i >= CONTENTS:
+    if i >= CONTENTS and i < HEADING:
         return surface.size / (CONTENT * layer.law.roughness)
-    return request.stroke_time if i >= V_X else 1.0
+    unit = arm_of(face) if i >= HEADING else 1.0
+    return request.stroke_time * unit if i in (V_X, V_Y, SPIN) else unit
 
 
 @device_no_arrays
-def _finish(layer: Layer, memory: Memory, h: float, first: int) -> None:
+def _finish(layer: Layer, memory: Memory, h: float, first: int, last: int) -> None:
     """The end of a step whose stages are found, both ledgers included, and its rate as a polynomial."""
     step, start = memory.step[0], memory.gap[0]
-    state, stages, end, last = step.state, step.stages, step.end, STAGES - 1
+    state, stages, end, final = step.state, step.stages, step.end, STAGES - 1
     for i in range(STATE):
-        end[i] = stages[last, i]
+        end[i] = stages[final, i]
     for i in range(SOLVED, RATES):
         end[i] = state[i]
         for j in range(STAGES):
-            end[i] += h * A[last, j] * step.rates[j, i]
+            end[i] += h * A[final, j] * step.rates[j, i]
     for k in range(STAGES):
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             step.rates[k, i] = 0.0
             for j in range(STAGES):
                 step.rates[k, i] += BACK[k, j] / h * (stages[j, i] - state[i])
@@ -202,19 +224,21 @@ def _finish(layer: Layer, memory: Memory, h: float, first: int) -> None:
             xx += BACK[k, j] / h * (g.xx - start.xx)
             xy += BACK[k, j] / h * (g.xy - start.xy)
             yy += BACK[k, j] / h * (g.yy - start.yy)
-        end[PUMPED] += h * A[last, k] * pumped(layer, z, xx, xy, yy, memory.gap[k + 1])
+        end[PUMPED] += h * A[final, k] * pumped(layer, z, xx, xy, yy, memory.gap[k + 1])
     for k in range(STAGES):
-        for i in range(first, SOLVED):
+        for i in range(first, last):
             step.past[k, i] = 0.0
             for j in range(STAGES):
                 step.past[k, i] += AHEAD[k, j] * step.rates[j, i]
 
 
 @device_no_arrays
-def error_of(surface: Surface, request: Request, layer: Layer, memory: Memory, h: float) -> float:
+def error_of(
+    surface: Surface, request: Request, layer: Layer, face: Face | tuple[()], memory: Memory, h: float
+) -> float:
     """The error of the step tried as a distance [m]."""
     step, first = memory.step[0], first_of(memory)
-    m, n = step.system, SOLVED - first
+    m, n = step.system, last_of(face, memory) - first
     for i in range(n):
         m[i, n] = AT_START * step.rate[first + i]
         for k in range(STAGES):
@@ -226,17 +250,17 @@ def error_of(surface: Surface, request: Request, layer: Layer, memory: Memory, h
         return math.inf
     total = 0.0
     for i in range(n):
-        total += (step.off[i] * _unit(surface, request, layer, first + i)) ** 2
+        total += (step.off[i] * _unit(surface, request, layer, face, first + i)) ** 2
     return math.sqrt(total)
 
 
 @device_no_arrays
-def fill_within(memory: Memory, share: float, h: float, out: FloatArray) -> None:
+def fill_within(face: Face | tuple[()], memory: Memory, share: float, h: float, out: FloatArray) -> None:
     """The state a share of the last step of h [s] after its begin into `out`, ledgers excluded."""
     step, first = memory.step[0], first_of(memory)
     for i in range(STATE):
         out[i] = step.end[i]
-    for i in range(first, SOLVED):
+    for i in range(first, last_of(face, memory)):
         total = 0.0
         for k in range(STAGES - 1, -1, -1):
             total = total * (share - 1.0) + step.past[k, i] / (k + 1)
@@ -244,12 +268,12 @@ def fill_within(memory: Memory, share: float, h: float, out: FloatArray) -> None
 
 
 @device_no_arrays
-def take_step(memory: Memory, h: float) -> None:
+def take_step(face: Face | tuple[()], memory: Memory, h: float) -> None:
     """Make the end of a step of h [s] the state, and its rate the guess for the next."""
     step, first = memory.step[0], first_of(memory)
     for i in range(STATE):
         step.state[i] = step.end[i]
-    for i in range(first, SOLVED):
+    for i in range(first, last_of(face, memory)):
         power = 1.0
         for k in range(STAGES):
             step.lead[k, i] = step.past[k, i] / power

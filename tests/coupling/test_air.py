@@ -220,6 +220,25 @@ def test_a_bow_is_found_from_a_track() -> None:
 
 
 FACE = {"mass": "2 ug", "position": ["0 um", "0 um"], "footprint": "disc", "radius": "50 um", "thickness": "50 um"}
+TRIANGLE = {
+    **{key: FACE[key] for key in ("mass", "position", "thickness")},
+    "footprint": "polygon",
+    "corners": [["0 um", "0 um"], ["50 um", "0 um"], ["0 um", "50 um"]],
+}
+
+
+@pytest.mark.compiled
+def test_a_case_has_a_film_under_a_face() -> None:
+    result = run_case(case(**SHAKEN, **FILM, part={**FACE, "velocity": ["20 mm/s", "0 mm/s"], "spin": "500 rad/s"}))
+    air, path = air_of(result.summary), result.trajectory
+    assert air.included == "film"
+    assert air.film_balance is not None and air.film_balance < 1e-6
+    assert air.end_without is not None and air.largest_gap is not None
+    assert path.air_force is not None and np.ptp(path.air_force) > 0
+    assert path.heading is not None and path.heading[-1] != 0
+    assert not [line for line in warnings(result.summary) if "film of air" in line]
+    assert any("a film carries part of the load" in text for _, text in lines(result.summary, verbose=True))
+
 
 ENDS = {
     "shape": "platform",
@@ -232,7 +251,15 @@ ENDS = {
     [
         ({"air": {"film": True, "pressure": "0 Pa"}}, "air.film of Case must be false in a vacuum"),
         ({"air": {"film": "yes"}}, "air.film of Case must be true or false"),
-        ({**FILM, "part": FACE}, r"air.film of Case must be false with a footprint in .part.: only a point's square"),
+        ({**FILM, "part": TRIANGLE}, r"air.film of Case must be false with a polygon in .part.: only squares, rect"),
+        (
+            {**FILM, "part": {**FACE, "local_contact": True}},
+            "air.film of Case must be false with a footprint and local",
+        ),
+        (
+            {**FILM, "part": FACE, "run": {"duration": "1 ms", "after_tipping": "ignore"}},
+            'run.after_tipping of Case must be "stop" with a film of air under a footprint',
+        ),
         (
             {**FILM, "friction": {"model": "coulomb", "coefficient": 0.1}},
             "friction.adhesion of Case must be greater than 0 with a film of air",

@@ -1,6 +1,6 @@
-"""Air under a square face, by collocation in two dimensions: the compressible Reynolds equation of a rarefied gas.
+"""Air under a rectangular face, by collocation in two dimensions: the compressible Reynolds equation of a rarefied gas.
 
-With the pressure p and the gap h = h0 - kappa/2 (x^2 + y^2 - L^2/6), whose mean over the face is h0,
+With the pressure p and the gap h = h0 - kappa/2 (x^2 + y^2 - (a^2 + b^2)/12), whose mean over the sides a, b is h0,
 
     d(p h)/dt = div(h^3 p Qbar/(12 mu) grad p),   p = p_a at the rim,   Qbar = 1 + 9.638 Kn^1.159,   Kn = mfp p_a/(p h)
 
@@ -65,20 +65,19 @@ class Film:
     contact: RoughContact
     load: Callable[[float], float]
     curvature: Callable[[float], float] = lambda t: 0.0
-    local: bool = True  # the asperities' load: its integral over the face if True, that of the mean gap if not
     points: int = 10  # n, from the middle of a side to its end
+    sides: tuple[float, float] = (SIDE, SIDE)  # m
 
     @cached_property
     def grid(self):
-        """Points, weights and derivatives along half a side."""
-        return quadrant(self.points, SIDE)
+        """Points, weights and derivatives along half of each side."""
+        return tuple(quadrant(self.points, side) for side in self.sides)
 
     def state(self, t, u, more=0.0):
         """h (k, n, n), p / p_a, h0 (k,) and the asperities' load (k,) under a load that is more by `more`."""
-        x, w, _, _ = self.grid
-        area = np.outer(w, w)
-        shape = self.curvature(t) / 2 * (SIDE**2 / 6 - x[:, None] ** 2 - x**2)
-        at = shape if self.local else 0 * shape
+        (x, w_x, _, _), (y, w_y, _, _) = self.grid
+        area = np.outer(w_x, w_y)
+        shape = self.curvature(t) / 2 * (sum(side**2 for side in self.sides) / 12 - x[:, None] ** 2 - y**2)
         inner = np.s_[..., :-1, :-1]
         u = u.T.reshape(-1, self.points - 1, self.points - 1)
         h0 = np.einsum("kij,ij->k", u, area[inner])[:, None, None] / area[inner].sum()
@@ -86,9 +85,9 @@ class Film:
             h = h0 + shape
             p = np.ones_like(h)
             p[inner] = u / h[inner]
-            asperities = (area * self.contact.pressure(h0 + at)).sum(axis=(1, 2))
+            asperities = (area * self.contact.pressure(h0 + shape)).sum(axis=(1, 2))
             excess = asperities + PRESSURE * (area * (p - 1)).sum(axis=(1, 2)) - self.load(t) - more
-            slope = self.contact.slope(h0 + at)
+            slope = self.contact.slope(h0 + shape)
             slope[inner] = slope[inner] - PRESSURE * u / h[inner] ** 2
             step = excess / (area * slope).sum(axis=(1, 2))
             h0 = h0 - step[:, None, None]
@@ -98,16 +97,17 @@ class Film:
 
     def rates(self, t, u, more=0.0):
         """du/dt, of the shape of u."""
-        _, _, even, odd = self.grid
+        (_, _, even_x, odd_x), (_, _, even_y, odd_y) = self.grid
         columns = u.reshape(len(u), -1)
         h, p, _, _ = self.state(t, columns, more)
         mobility = PRESSURE / (12 * VISCOSITY) * h**3 * p * flow(FREE_PATH / (p * h))
-        rate = odd @ (mobility * (even @ p)) + (mobility * (p @ even.T)) @ odd.T
+        rate = odd_x @ (mobility * (even_x @ p)) + (mobility * (p @ even_y.T)) @ odd_y.T
         return rate[:, :-1, :-1].reshape(columns.shape[1], -1).T.reshape(u.shape)
 
     def history(self, breaks: Sequence[float], tolerance: float = 1e-7, samples: int = 201):
         """From rest: times, h0 and the asperities' load, each (len(breaks) - 1, samples), smooth between breaks."""
-        u = np.full((self.points - 1) ** 2, self.contact.gap(self.load(breaks[0])))
+        load = self.load(breaks[0]) * SIDE**2 / (self.sides[0] * self.sides[1])
+        u = np.full((self.points - 1) ** 2, self.contact.gap(load))
         pieces = []
         for start, end in zip(breaks, breaks[1:], strict=False):
             scale = {"rtol": tolerance, "atol": tolerance * 1e-8}
@@ -120,7 +120,7 @@ class Film:
     def share(self, frequency: float) -> complex:
         """The asperities' part of a small harmonic load, about rest on a flat surface: linear in small differences."""
         n = (self.points - 1) ** 2
-        rest = self.contact.gap(self.load(0.0))
+        rest = self.contact.gap(self.load(0.0) * SIDE**2 / (self.sides[0] * self.sides[1]))
         columns, e, f = np.full((n, n), rest), 1e-5 * rest * np.eye(n), 1e-3 * self.load(0.0)
         by_state = (self.rates(0.0, columns + e) - self.rates(0.0, columns - e)) / (2e-5 * rest)
         by_load = (self.rates(0.0, columns[:, 0], f) - self.rates(0.0, columns[:, 0], -f)) / (2 * f)
