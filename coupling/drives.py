@@ -104,7 +104,7 @@ def reach(drive: AnyDrive) -> tuple[float, float]:
 def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:
     """The first time [s] between 0 and `end` at which a drive's velocity jumps; None: at none."""
     times = []
-    for drive in drives:
+    for drive in dict.fromkeys(drives):  # many of a lattice are equal
         near, pieces = 1e-6 * drive.stroke_time, drive.segments()
         edges = drive.delay + np.append(pieces.since, pieces.duration)
         edges = edges[(edges > 0) & (edges < end)]
