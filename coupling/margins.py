@@ -147,7 +147,7 @@ class PathLoads:
         samples = self.trajectory.contact_at(times)
         begins = (samples.state == State.SLIP) & np.isin(times, self.slips)
         stuck = (samples.state == State.STICK) | begins
-        air = self.trajectory.at(times).air_force
+        air = None if self.trajectory.air_force is None else self.trajectory.at(times).air_force
         own = samples.normal_force if air is None else samples.normal_force - air
         loads = np.where(samples.state == State.FLIGHT, np.nan, own)
         ratios = np.full(len(times), np.nan)

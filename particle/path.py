@@ -149,15 +149,16 @@ def _face_path(surface: SurfaceMotion, request: Request, face: Face, stop: IntAr
     def sampler(times: FloatArray) -> Rows:
         """The rows at ascending times [s]: pieces of the path, each from the row before."""
         places = np.searchsorted(rows["time"], times, side="right") - 1
-        found, record = rows[places], new_record()
-        memory = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64))
+        found, record, over = rows[places], new_record(), surface.record
+        memory = new_body_memory(over, face, np.zeros(1, dtype=np.int64))
         for k in np.flatnonzero((times > found["time"]) & (places + 1 < len(rows))):
             row = found[k]
             start = [row[name] for name in ("x", "y", "heading", "v_x", "v_y", "spin", "work", "dissipated")]
-            begin, until = float(row["time"]), float(times[k])
-            piece = request._replace(start=np.array(start), mode=int(row["mode"]), begin=begin, until=until)
+            begin, until, mode = float(row["time"]), float(times[k]), int(row["mode"])
+            step = until - begin
+            piece = request._replace(start=np.array(start), mode=mode, begin=begin, until=until, first_step=step)
             memory.counts[0] = record.lengths[0] = 0
-            done = march_body(surface.record, piece, face, memory, record)
+            done = march_body(over, piece, face, memory, record)
             found[k] = done.rows[done.lengths[0]["rows"] - 1]
         return found
 

@@ -18,6 +18,7 @@ from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import Surface
 
 FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
+SHORT = 1e-4  # of a stroke: what is left of a span is then all in that moment
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
 BEFORE_STOP = 0.75  # of the time to a stop: the longest step
 STOPPED = 1e-7, 1e-3  # of a stroke, of the tolerance: how close a stop's time and place must be
@@ -37,7 +38,9 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     """
     now: Now = memory.now[0]
     part, state, b, s = request.part, memory.step[0].state, memory.balance[0], memory.search[0]
-    moment = min(FIRST * request.stroke_time, 0.1 * (now.span_end - now.time))
+    remaining = now.span_end - now.time
+    whole = remaining < SHORT * request.stroke_time
+    moment = remaining if whole else min(FIRST * request.stroke_time, 0.1 * remaining)
     settle(part, face, memory, state, now.time)
     before = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
     needed(b, s.needed)
@@ -49,7 +52,7 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
         needed(b, s.needed)
         gauge(part, face, b, s)
     rate = slip_rate(part, face, b, s)
-    now.time += moment
+    now.time = now.span_end if whole else now.time + moment
     speed = 0.5 * (first + rate) * moment
     if not (rate > 0.0 and speed > 0.0):
         after = sum(energy_of(part, face, base_at(memory.local, now.time), 0.0, 0.0, 0.0, b))
