@@ -38,7 +38,8 @@ def extremes(
     points = np.concatenate([steep, _rings(shapes, sharp, off)])
     value, gradient, hessian = shapes.evaluate(points)
     value, gradient = value[: len(steep)], gradient[: len(steep)]
-    slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
+    slopes = np.ascontiguousarray(np.moveaxis(gradient, 2, 0))  # (2, n, N)
+    slope = max(float(np.hypot(*(slopes @ h)).max()) for h in heights)
     far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
     rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
     curvature = max(float(_principal(*(rows @ h)).max()) for h in heights) if far.any() else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
@@ -25,6 +26,7 @@ LINEAR_ERROR = 0.08
 # The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first
 # frequency: 3.3 f/f1 of strokes up and down at f. The jump of jerk at both ends of a stroke makes it ring so.
 QUASI_STATIC_ERROR = 1.65
+_FIRST: WeakKeyDictionary[PlateShapes, dict[float, float]] = WeakKeyDictionary()  # Hz, by density
 
 
 @dataclass(frozen=True)
@@ -186,9 +188,13 @@ def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
     density, held = plate.section.density, shapes.springs > 0
     if density is None:
         return None
-    if isinstance(shapes, PatchedShapes) and held.any():
-        return shapes.first_frequency(density * plate.section.thickness)
-    return float(plate.frequencies(1, shapes.points[held], shapes.springs[held])[0])
+    known = _FIRST.setdefault(shapes, {})
+    if density not in known:
+        if isinstance(shapes, PatchedShapes) and held.any():
+            known[density] = shapes.first_frequency(density * plate.section.thickness)
+        else:
+            known[density] = float(plate.frequencies(1, shapes.points[held], shapes.springs[held])[0])
+    return known[density]
 
 
 def _range(values: list[float]) -> tuple[float, float]:

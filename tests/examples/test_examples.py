@@ -13,6 +13,7 @@ from particle import State
 FILES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 LARGE = "array_100x100"
 QUICK = "rectangle_2x2"
+SOME = 50  # steps of each file that are looked at
 EXAMPLES = [
     pytest.param(file, id=file.stem, marks=[pytest.mark.slow] if file.stem != QUICK else [])
     for file in FILES
@@ -33,14 +34,14 @@ def test_writes_one_file_of_each_kind_and_nothing_partial(result):
     )
 
 
-def test_part_stands_on_the_surface_at_every_step(result):
+def test_part_stands_on_the_surface(result):
     plate, part = (pyvista.get_reader(str(file)).reader for file in result.files[:2])
     plate.UpdateInformation()
     part.UpdateInformation()
     steps = part.GetNumberOfSteps()
     assert steps == plate.GetNumberOfSteps() >= 100
     times = []
-    for step in range(steps):
+    for step in sorted({*range(0, steps, max(1, steps // SOME)), steps - 1}):
         part.SetStep(step)
         part.Update()
         time = part.GetTimeValue()
@@ -75,14 +76,14 @@ def areas(points, triangles):
     return (a * d - b * c) / 2
 
 
-def test_plate_is_lifted_by_the_drives_at_every_step(result):
+def test_plate_is_lifted_by_the_drives(result):
     reader = pyvista.get_reader(str(result.files[0])).reader
     reader.UpdateInformation()
     actuators = np.array([actuator.position for actuator in result.case.actuators])
     some = np.arange(0, len(actuators), max(1, len(actuators) // 16))  # each has cells that must be built
     scale = result.case.actuators[0].stroke or result.summary.deflection_over_thickness * result.case.plate.thickness
     steps = reader.GetNumberOfSteps()
-    for step in range(0, steps, max(1, steps // 50) if len(actuators) > 1000 else 1):
+    for step in range(0, steps, max(1, steps // SOME)):
         reader.SetStep(step)
         reader.Update()
         grid = pyvista.wrap(reader.GetOutputDataObject(0))
@@ -110,4 +111,4 @@ def test_ten_thousand_actuators_run_and_their_files_stay_small(tmp_path):
     assert 0.006 <= summary.deflection_over_thickness < 0.007 and 0 < summary.part_sag < 1e-12
     assert 1e6 < summary.first_frequency < 1e8 and summary.drives_over_first == (summary.drive_over_first,) * 2
     assert sum(file.stat().st_size for file in result.files) < 50e6
-    test_plate_is_lifted_by_the_drives_at_every_step(result)
+    test_plate_is_lifted_by_the_drives(result)
