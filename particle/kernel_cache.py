@@ -198,7 +198,7 @@ class KernelCache(Cache):  # type: ignore[misc]
     """The cache of one kernel.
 
     Once a source has been edited under a running process, nothing is loaded or saved any more. Of several processes
-    that need kernels, one compiles while the others wait.
+    that need a kernel, one compiles it while the others wait.
     """
 
     _impl_class = _CacheImpl
@@ -245,8 +245,8 @@ class KernelCache(Cache):  # type: ignore[misc]
             return False
         if other is not None:  # its compilation was broken off
             other._end()
-        # One lock for all kernels, as those that two of them call are saved with either. Another thread may let it go.
-        lock = FileLock(Path(self.cache_path) / "kernels.lock", thread_local=False)
+        # Another thread may let it go. What two kernels call may be compiled by two processes at once, and saved twice.
+        lock = FileLock(Path(self.cache_path) / f"{self._impl.filename_base}.lock", thread_local=False)
         with suppress(Timeout, OSError, NotImplementedError):  # then both compile it
             self._impl.locator.ensure_cache_path()
             lock.acquire(timeout=MAX_WAIT)
