@@ -1,7 +1,8 @@
 """The one place where kernels are compiled: cached on disk, IEEE arithmetic, other threads running on.
 
-Only kernels that Python calls are compiled by themselves. What else they call is part of what they compile: numba makes
-machine code of a kernel with all that it calls, and a way in from Python costs as much as most small functions do.
+Only kernels that Python calls are compiled by themselves. What else they call is part of what they compile: LLVM
+optimises a kernel with all that it calls, and a way in from Python costs as much as most small functions do. numba
+would optimise each function with what it calls, and make machine code of it; device functions leave it to the kernel.
 """
 
 from __future__ import annotations
@@ -11,7 +12,11 @@ from typing import Any, TypeVar
 
 import numba
 from numba.core import config
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import NativeLowering
 
 from particle.kernel_cache import KernelCache, place_of
 
@@ -62,7 +67,7 @@ def _compiled(kernel: Kernel, **options: Any) -> Kernel:
 
 
 def _device(function: Kernel, **options: Any) -> Kernel:
-    dispatcher = numba.njit(**OPTIONS, no_cpython_wrapper=True, **options)(function)
+    dispatcher = numba.njit(**OPTIONS, no_cpython_wrapper=True, pipeline_class=_DeviceCompiler, **options)(function)
     if not config.DISABLE_JIT:
         dispatcher.__class__ = _Device
     return dispatcher  # type: ignore[no-any-return]
@@ -73,6 +78,48 @@ class _Device(CPUDispatcher):  # type: ignore[misc]
 
     def __call__(self, *arguments: Any) -> Any:
         return self.py_func(*arguments)
+
+    def add_overload(self, compiled: Any) -> None:
+        self.overloads[tuple(compiled.signature.args)] = compiled
+
+
+class _DeviceLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The code of a function and what it calls, not optimised: a kernel optimises all that it calls, once."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _DeviceLowering(NativeLowering):  # type: ignore[misc]
+    """Make LLVM's code of a function, and no machine code."""
+
+    _name = "device_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = _DeviceLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        state.flags.no_compile = True
+        super().run_pass(state)
+        key = object()
+        state.targetctx.insert_user_function(key, state.cr.fndesc, [state.library])
+        state.cr = state.cr._replace(cfunc=key)
+        return True
+
+
+class _DeviceCompiler(CompilerBase):  # type: ignore[misc]
+    """numba's own, with this lowering."""
+
+    def define_pipelines(self) -> list[Any]:
+        pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        pipeline.passes = [
+            (_DeviceLowering if step is NativeLowering else step, name) for step, name in pipeline.passes
+        ]
+        pipeline.finalize()
+        return [pipeline]
 
 
 # For other packages: at the door of this one, `jit` is the module.
