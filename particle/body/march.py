@@ -14,7 +14,7 @@ from particle.body.memory import HEADING, SPIN, STATE, V_X, V_Y, WORK, Memory, X
 from particle.body.rest import leaves_rest
 from particle.body.slide import begin_slip, slide
 from particle.body.state import base_at, contact_margin, end_reason, fill_row, rim_margin, settle
-from particle.events import PathRecord, Request, last_row, note, write
+from particle.events import PathRecord, Request, last_row, note, with_room, write
 from particle.events.mechanics import Counts, Now, Part
 from particle.jit import device_no_arrays, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
@@ -44,6 +44,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     if slips:
         now.mode = Mode.RESTING
     while now.verdict == Verdict.GOES_ON and now.time < request.until:
+        record = with_room(record)
         if memory.stop[0] != 0:
             now.verdict = Verdict.INTERRUPTED
             break
@@ -74,29 +75,29 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
             now.h = max(now.h, 1e-4 * request.stroke_time)
         if record.lengths[0].rows == 0:
             fill_row(part, face, memory, now.mode, memory.row[0])
-            record = write(record, memory.row[0])
+            write(record, memory.row[0])
         event = NO_EVENT
         if now.mode == Mode.RESTING:
             if _rest(surface, request, face, memory) == EventKind.SLIPS:
                 fill_row(part, face, memory, Mode.SLIDING, memory.row[0])
                 if begin_slip(request, face, memory):
-                    record = write(record, memory.row[0])
+                    write(record, memory.row[0])
                     if not slips:
-                        record = note(record, EventKind.SLIPS, memory.row[0])
+                        note(record, EventKind.SLIPS, memory.row[0])
             slips = False
         else:
             event = slide(surface, request, face, memory)
             slips = event == EventKind.REVERSES
         fill_row(part, face, memory, now.mode, memory.row[0])
         if event != NO_EVENT:
-            record = note(record, event, memory.row[0])
-        record = write(record, memory.row[0])
+            note(record, event, memory.row[0])
+        write(record, memory.row[0])
         if counts.evaluations > MIN_EVALUATIONS + EVALUATIONS_PER_SPAN * counts.spans:
             now.verdict = Verdict.WORK_LIMIT
     verdict = now.verdict
     if verdict >= Verdict.DETACHED and verdict <= Verdict.TIPPED:
         memory.row[0] = last_row(record)
-        record = note(record, END_EVENTS + verdict, memory.row[0])
+        note(record, END_EVENTS + verdict, memory.row[0])
     return record
 
 

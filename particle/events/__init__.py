@@ -23,7 +23,18 @@ from particle.events.mechanics import (
     rest_pull,
 )
 from particle.events.memory import Memory, clear_memory, new_memory
-from particle.events.record import ROW, EventRow, PathRecord, Row, fill_row, last_row, new_record, note, write
+from particle.events.record import (
+    ROW,
+    EventRow,
+    PathRecord,
+    Row,
+    fill_row,
+    last_row,
+    new_record,
+    note,
+    with_room,
+    write,
+)
 from particle.events.request import Request
 from particle.events.rest import ROUNDING
 from particle.events.sliding import end_reason

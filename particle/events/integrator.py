@@ -13,12 +13,12 @@ import math
 from particle.events.flight import MIN_JUMP, cross_jump, fly, take_off, velocity_jump
 from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, grip_at, margin, pull, rest_pull, slip_speed
 from particle.events.memory import Memory
-from particle.events.record import PathRecord, Row, fill_row, last_row, note, write
+from particle.events.record import PathRecord, Row, fill_row, last_row, note, with_room, write
 from particle.events.request import Request
 from particle.events.rest import leaves_rest
 from particle.events.sliding import bridge, first_mode, slide
 from particle.events.tableau import Pairs
-from particle.jit import inlined, jit
+from particle.jit import device, device_no_arrays, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface, enter, gap_at, surface_at
 
@@ -39,7 +39,8 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
     now: Now = memory.now[0]
     _begin(request, memory)
     while now.verdict == Verdict.GOES_ON and now.time < request.until:
-        record = _enter(surface, request, memory, record)
+        record = with_room(record)
+        _enter(surface, request, memory, record)
         if now.verdict != Verdict.GOES_ON:
             break
         before = now.mode
@@ -49,10 +50,11 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
             event = _fly(surface, request, memory)
         else:
             event = slide(surface, request, pairs, memory)
-        record = _note(request, memory, record, before, event)
+        _note(request, memory, record, before, event)
         if request.only_rests and now.mode != Mode.RESTING:
             break
-    return _note_end(memory, record)
+    _note_end(memory, record)
+    return record
 
 
 @inlined
@@ -65,8 +67,8 @@ def _begin(request: Request, memory: Memory) -> None:
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
 
 
-@inlined
-def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> PathRecord:
+@device_no_arrays
+def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> None:
     """Prepares the surface around the part, in the next span where one has ended."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
@@ -74,13 +76,13 @@ def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecor
     local, row = memory.local, memory.row[0]
     if memory.stop[0] != 0:
         now.verdict = Verdict.INTERRUPTED
-        return record
+        return
     if now.time >= now.span_end:
         now.h = max(now.h, MIN_SPAN_STEP * request.stroke_time)
         if request.jumps and counts.spans > 0:
-            record = _cross_breakpoint(surface, request, memory, record)
+            _cross_breakpoint(surface, request, memory, record)
             if now.verdict != Verdict.GOES_ON:
-                return record
+                return
         counts.spans += 1
     bridge(local, request, now.mode)
     cell = enter(surface, local, motion.x, motion.y, now.time, request.duration)
@@ -97,12 +99,11 @@ def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecor
                 f = surface_at(local, motion.x, motion.y, now.time)
                 motion.v_x, motion.v_y = slip_speed(f, request.part, motion.v_x, motion.v_y), 0.0
             fill_row(local, request.part, now.mode, now.time, motion, row)
-            record = write(record, row)
-    return record
+            write(record, row)
 
 
 @inlined
-def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> PathRecord:
+def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> None:
     """Goes on to the next span, where the surface's velocity may jump.
 
     It stays in its cell for that, entered by its centre: from one cell to the next the velocity differs by the error of
@@ -118,7 +119,7 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     new = surface_at(local, motion.x, motion.y, now.time)
     slack = MIN_JUMP * surface.size / request.stroke_time
     if velocity_jump(old, new, request.part) <= slack:
-        return record
+        return
     if before == Mode.MANIFOLD:
         motion.v_x, motion.v_y = row.v_x, row.v_y
     now.mode = cross_jump(old, new, request.part, before, slack, motion)
@@ -126,15 +127,15 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     if now.mode == Mode.FLYING and not request.flies:
         now.verdict = Verdict.DETACHED
     elif now.mode == Mode.FLYING and before != Mode.FLYING:
-        record = note(record, EventKind.DETACHES, row)
+        note(record, EventKind.DETACHES, row)
     elif now.mode == Mode.RESTING and before != Mode.RESTING:
-        record = note(record, EventKind.STOPS, row)
+        note(record, EventKind.STOPS, row)
     elif before == Mode.RESTING and now.mode != Mode.RESTING:
-        record = note(record, EventKind.SLIPS, row)
-    return write(record, row)
+        note(record, EventKind.SLIPS, row)
+    write(record, row)
 
 
-@inlined
+@device
 def _rest(request: Request, memory: Memory) -> int:
     """The part stays until it leaves or the span ends; SLIPS or NO_EVENT."""
     now: Now = memory.now[0]
@@ -160,7 +161,7 @@ def _rest(request: Request, memory: Memory) -> int:
     return EventKind.SLIPS.value
 
 
-@inlined
+@device
 def _fly(surface: Surface, request: Request, memory: Memory) -> int:
     """The part flies one step, at most to where it lands; LANDS or NO_EVENT."""
     now: Now = memory.now[0]
@@ -175,8 +176,8 @@ def _fly(surface: Surface, request: Request, memory: Memory) -> int:
     return event
 
 
-@inlined
-def _note(request: Request, memory: Memory, record: PathRecord, before: int, event: int) -> PathRecord:
+@device_no_arrays
+def _note(request: Request, memory: Memory, record: PathRecord, before: int, event: int) -> None:
     """Records what has happened, and where the part is; `before`: the mode that it was in."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
@@ -189,24 +190,22 @@ def _note(request: Request, memory: Memory, record: PathRecord, before: int, eve
         take_off(memory.local, now.time, motion)
         now.mode, now.h = Mode.FLYING, FIRST_STEP * request.stroke_time
     if event != NO_EVENT:
-        record = note(record, event, row)
+        note(record, event, row)
     if event == EventKind.LANDS and now.mode == Mode.FLYING:
-        record = note(record, EventKind.DETACHES, row)
+        note(record, EventKind.DETACHES, row)
     if now.mode != before:
         fill_row(memory.local, request.part, now.mode, now.time, motion, row)
     counts.long_steps += row.time - last_row(record).time > LONG * request.duration
-    record = write(record, row)
+    write(record, row)
     allowed = MIN_EVALUATIONS + EVALUATIONS_PER_SPAN * counts.spans + EVALUATIONS_PER_STEP * counts.long_steps
     if counts.evaluations > allowed:
         now.verdict = Verdict.WORK_LIMIT
-    return record
 
 
 @inlined
-def _note_end(memory: Memory, record: PathRecord) -> PathRecord:
+def _note_end(memory: Memory, record: PathRecord) -> None:
     """Records why the path ended, where that is an event."""
     verdict = memory.now[0].verdict
     if verdict == Verdict.DETACHED or verdict == Verdict.LEFT_PLATE or verdict == Verdict.OVERLOADED:
         memory.row[0] = last_row(record)
-        record = note(record, END_EVENTS + verdict, memory.row[0])
-    return record
+        note(record, END_EVENTS + verdict, memory.row[0])

@@ -22,7 +22,6 @@ class Step(NamedTuple):
     rates: NDArray[Motion]  # (stages + 1,)
     rate_numbers: FloatArray  # (stages + 1, SIZE)
     stage: NDArray[Motion]  # (1,)
-    stage_numbers: FloatArray  # (1, SIZE)
     end: NDArray[Motion]  # (1,)
     plane: NDArray[Motion]  # (1,) the motion at the start, its velocity in the plane's coordinates
     loads: FloatArray  # (stages + 1,) N, normal force at each stage
@@ -36,7 +35,6 @@ def new_step(pairs: Pairs) -> Step:
         rates=rates,
         rate_numbers=as_numbers(rates),
         stage=stage,
-        stage_numbers=as_numbers(stage),
         end=new_records(Motion),
         plane=new_records(Motion),
         loads=np.zeros(stages),

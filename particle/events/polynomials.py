@@ -128,6 +128,8 @@ def total(a: FloatArray, b: FloatArray) -> FloatArray:
 def narrow(c: FloatArray, low: float, width: float) -> None:
     """A polynomial of s on [low, low + width] as one of r on [0, 1], in place."""
     n = len(c) - 1
+    while n > 0 and c[n] == 0.0:
+        n -= 1
     for k in range(n):
         for j in range(n - 1, k - 1, -1):
             c[j] += low * c[j + 1]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.events.mechanics import Motion, Part, energy, grip_at, heading, pull, rest_pull, rising, velocity
-from particle.jit import device
+from particle.jit import device, device_no_arrays
 from particle.modes import Mode
 from particle.records import Record, new_records, record_type
 from particle.surface import LocalSurface, surface_at
@@ -59,6 +59,7 @@ class Lengths(Record):
 
 
 ROW, EVENT = record_type(Row), record_type(EventRow)
+ROOM = 4  # rows and events that one turn of a march adds at most, with the event of the end
 
 
 class PathRecord(NamedTuple):
@@ -73,7 +74,7 @@ def new_record() -> PathRecord:
     return PathRecord(new_records(Row, 1024), new_records(EventRow, 256), new_records(Lengths))
 
 
-@device
+@device_no_arrays
 def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Motion, row: Row) -> None:
     """The row of a part's motion into `row`."""
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
@@ -96,37 +97,39 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
 
 
 @device
-def write(record: PathRecord, row: Row) -> PathRecord:
-    """The record with one more row, or with its last row replaced when no time has passed."""
-    rows, lengths = record.rows, record.lengths[0]
+def with_room(record: PathRecord) -> PathRecord:
+    """The record with room for what one turn of a march adds."""
+    rows, events, lengths = record.rows, record.events, record.lengths[0]
+    if lengths.rows + ROOM > len(rows):
+        rows = np.zeros(2 * len(rows), ROW)
+        rows[: len(record.rows)] = record.rows
+    if lengths.events + ROOM > len(events):
+        events = np.zeros(2 * len(events), EVENT)
+        events[: len(record.events)] = record.events
+    return PathRecord(rows, events, record.lengths)
+
+
+@device_no_arrays
+def write(record: PathRecord, row: Row) -> None:
+    """Adds a row, or replaces the last one when no time has passed."""
+    lengths = record.lengths[0]
     place = lengths.rows
-    if place > 0 and rows[place - 1].time == row.time:
+    if place > 0 and record.rows[place - 1].time == row.time:
         place -= 1
-    if place == len(rows):
-        longer = np.zeros(2 * len(rows), ROW)
-        longer[: len(rows)] = rows
-        rows = longer
-    rows[place] = row
+    record.rows[place] = row
     lengths.rows = place + 1
-    return PathRecord(rows, record.events, record.lengths)
 
 
-@device
-def note(record: PathRecord, kind: int, row: Row) -> PathRecord:
-    """The record with one more event, at the place, time and speed of a row."""
-    events, lengths = record.events, record.lengths[0]
-    place = lengths.events
-    if place == len(events):
-        longer = np.zeros(2 * len(events), EVENT)
-        longer[: len(events)] = events
-        events = longer
-    event = events[place]
+@device_no_arrays
+def note(record: PathRecord, kind: int, row: Row) -> None:
+    """Adds an event at the place, time and speed of a row."""
+    lengths = record.lengths[0]
+    event = record.events[lengths.events]
     event.kind, event.time, event.x, event.y = kind, row.time, row.x, row.y
     event.speed, event.load, event.heading = math.hypot(row.v_x, row.v_y), row.load, row.heading
-    lengths.events = place + 1
-    return PathRecord(record.rows, events, record.lengths)
+    lengths.events += 1
 
 
-@device
+@device_no_arrays
 def last_row(record: PathRecord) -> Row:
     return record.rows[record.lengths[0].rows - 1]

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from particle.body import Face, enter_all, jumps, keep_carried
-from particle.events import PathRecord, Request, last_row, note, write
+from particle.events import PathRecord, Request, last_row, note, with_room, write
 from particle.events.flight import MIN_JUMP, velocity_jump
 from particle.events.mechanics import Counts, Now
 from particle.film.advance import rest
@@ -20,7 +20,7 @@ from particle.film.gap import fill_gap_at_rest, stored
 from particle.film.memory import CONTENTS, HEADING, PUMPED, SPIN, STATE, STORED, V_X, V_Y, Memory, X, Y, Z
 from particle.film.slide import begin_slip, slide
 from particle.film.state import fill_load, fill_row, rim_of, settle
-from particle.jit import device, device_no_arrays, jit
+from particle.jit import device_no_arrays, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import UNBUILT, Surface, allow_bridges, enter, surface_at
 from particle.types import FloatArray
@@ -57,6 +57,11 @@ def march_film(
     if slips:
         now.mode = Mode.RESTING
     while now.verdict == Verdict.GOES_ON and now.time < request.until:
+        record = with_room(record)
+        if len(states) < len(record.rows):
+            longer = np.zeros((len(record.rows), STATE))
+            longer[: len(states)] = states
+            states = longer
         if memory.stop[0] != 0:
             now.verdict = Verdict.INTERRUPTED
             break
@@ -81,7 +86,7 @@ def march_film(
             if now.verdict == Verdict.GOES_ON:
                 fill_row(request, layer, face, memory, now.mode, memory.row[0])
                 now.verdict = g.verdict
-            record, states = _write(record, states, memory, step.state)
+            _write(record, states, memory, step.state)
             if now.verdict != Verdict.GOES_ON:
                 break
         elif new_span:
@@ -101,9 +106,9 @@ def march_film(
                     step.probe[k] = step.state[k]
                 begins = begin_slip(surface, request, layer, face, memory)
                 if begins:
-                    record, states = _write(record, states, memory, step.probe)
+                    _write(record, states, memory, step.probe)
                 if begins and not slips:
-                    record = note(record, event, memory.row[0])
+                    note(record, event, memory.row[0])
                 event = NO_EVENT
             slips = False
         else:
@@ -111,29 +116,24 @@ def march_film(
             slips = event == EventKind.REVERSES
         fill_row(request, layer, face, memory, now.mode, memory.row[0])
         if event != NO_EVENT:
-            record = note(record, event, memory.row[0])
-        record, states = _write(record, states, memory, step.state)
+            note(record, event, memory.row[0])
+        _write(record, states, memory, step.state)
         if counts.evaluations > MIN_EVALUATIONS + EVALUATIONS_PER_SPAN * counts.spans:
             now.verdict = Verdict.WORK_LIMIT
     verdict = now.verdict
     if verdict >= Verdict.DETACHED and verdict <= Verdict.TIPPED and record.lengths[0].rows > 0:
         memory.row[0] = last_row(record)
-        record = note(record, END_EVENTS + verdict, memory.row[0])
+        note(record, END_EVENTS + verdict, memory.row[0])
     return record, states
 
 
-@device
-def _write(record: PathRecord, states: FloatArray, memory: Memory, state: FloatArray) -> tuple[PathRecord, FloatArray]:
-    """The record with the row memory.row[0], and the state at its rows, the last of which is `state`."""
-    record = write(record, memory.row[0])
-    if len(states) < len(record.rows):
-        longer = np.zeros((len(record.rows), STATE))
-        longer[: len(states)] = states
-        states = longer
+@device_no_arrays
+def _write(record: PathRecord, states: FloatArray, memory: Memory, state: FloatArray) -> None:
+    """Adds the row memory.row[0] to the record, and `state` to the states at its rows."""
+    write(record, memory.row[0])
     place = record.lengths[0].rows - 1
     for k in range(STATE):
         states[place, k] = state[k]
-    return record, states
 
 
 @device_no_arrays

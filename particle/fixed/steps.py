@@ -24,6 +24,7 @@ from particle.events import (
     margin,
     note,
     rest_pull,
+    with_room,
     write,
 )
 from particle.fixed.moreau import moreau_step
@@ -208,8 +209,11 @@ def _write(memory: FixedMemory, part: Part, scheme: int, record: PathRecord, eve
     now: Now = memory.now[0]
     row: Row = memory.row[0]
     fill_fixed_row(memory.local, part, scheme, now.mode, now.time, memory.motion[0], row)
-    record = write(record, row)
-    return note(record, event, row) if event != NO_EVENT else record
+    record = with_room(record)
+    write(record, row)
+    if event != NO_EVENT:
+        note(record, event, row)
+    return record
 
 
 @device

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from particle.friction.contact import LOCAL, FrictionLaw, friction_limit
-from particle.jit import device_no_arrays, jit
+from particle.jit import device_no_arrays, jit, spliced
 from particle.types import FloatArray
 
 LEAST, NEAR, HIGHEST = -4.0, 12.0, 8.0  # roughnesses: the table's begin, where asperities end, above any pull-off
@@ -44,14 +44,18 @@ class Pressures(NamedTuple):
     limit_slope: float
 
 
-@device_no_arrays
+@spliced
 def grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip:
     """Q under the net normal force `load` [N] on a surface with the second derivatives xx, xy and yy [1/m].
 
     Beyond pull-off and beyond a closed gap it goes on as it is there.
     """
-    if law.kind != LOCAL:
-        return Grip(friction_limit(law, load), load)
+    return _local_grip(law, load, xx, xy, yy) if law.kind == LOCAL else Grip(friction_limit(law, load), load)
+
+
+@device_no_arrays
+def _local_grip(law: FrictionLaw, load: float, xx: float, xy: float, yy: float) -> Grip:
+    """`grip` of a rough contact, point by point."""
     spread = spread_of(law, xx, xy, yy)
     if not spread < math.inf:  # off the plate
         return Grip(friction_limit(law, load), load)

@@ -1,6 +1,15 @@
 """The moving surface: its cells, and the polynomial that a part sees of it."""
 
-from particle.surface.at_point import SurfacePoint, height_here, motion_at, plane_jet, point_of, set_time, surface_at
+from particle.surface.at_point import (
+    SurfacePoint,
+    height_here,
+    motion_at,
+    plane_jet,
+    point_of,
+    set_time,
+    surface_at,
+    surface_here,
+)
 from particle.surface.bridge import allow_bridges
 from particle.surface.cells import (
     NO_PLANE,

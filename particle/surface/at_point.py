@@ -75,7 +75,9 @@ POINT_SIZE = len(SurfacePoint._fields)
 def set_time(local: LocalSurface, time: float) -> None:
     """Prepare `height_here` and `plane_jet` for a time [s] of the prepared span."""
     frame: Frame = local.frame[0]
-    s = (time - frame.time) / frame.unit
+    if time == frame.moment:
+        return
+    frame.moment, s = time, (time - frame.time) / frame.unit
     at_time(local.smooth, local.at, frame.monomials + frame.logarithms, s, frame.unit)
     if frame.in_plane > 0:
         at_time(local.plane, local.plane_at, 2 * frame.plane_monomials, s, frame.unit)
@@ -135,6 +137,12 @@ def height_here(local: LocalSurface, x: float, y: float) -> Jet:
 @device_no_arrays
 def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
+    return surface_here(local, x, y, time)
+
+
+@spliced
+def surface_here(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
+    """As `surface_at`, compiled into its caller."""
     frame: Frame = local.frame[0]
     set_time(local, time)
     f = height_here(local, x, y)

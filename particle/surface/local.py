@@ -27,6 +27,7 @@ class Frame(Record):
     end: float  # s, until which it holds
     unit: float  # s, its polynomials are in (t - time) / unit
     begun: float  # s, when it was prepared from nothing
+    moment: float  # s, of `at` and `plane_at`; nan: there is none
     x: float  # m, the cell's centre
     y: float
     half_x: float  # m, half its width

@@ -55,7 +55,7 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     frame.x, frame.y = entered.x, entered.y
     frame.half_x, frame.half_y = entered.half_x, entered.half_y
     frame.clear, frame.time, frame.unit = entered.clear, time, surface.unit
-    frame.cell, frame.begun = cell, time
+    frame.cell, frame.begun, frame.moment = cell, time, math.nan
     frame.degree, frame.monomials = entered.degree, monomial_count(entered.degree)
     frame.drives = entered.drives + frame.in_plane + frame.base_drives
     frame.plane_degree, frame.plane_monomials = entered.plane_degree, monomial_count(entered.plane_degree)
@@ -95,7 +95,7 @@ def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> 
     _shift(local.base, shift, 3)
     if frame.in_plane > 0:
         _shift(local.plane, shift, 2 * frame.plane_monomials)
-    frame.time = time
+    frame.time, frame.moment = time, math.nan
     for i in range(frame.drives):
         if _has_passed(clock[i], time):
             _take_out(surface, local, i)

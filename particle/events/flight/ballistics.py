@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 
 from particle.events.mechanics import Motion, Part, by_centre, normal_rate, stretched, unstretched
-from particle.jit import device, inlined
+from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 MAX_NEWTON, PLACED = 20, 1e-15  # of the place and of the height of the centre of mass
 
 
-@device
+@device_no_arrays
 def fly_ahead(
     local: LocalSurface, part: Part, here: SurfacePoint, time: float, motion: Motion, h: float, out: Motion
 ) -> None:
@@ -75,14 +75,14 @@ def _put_place(
             return
 
 
-@device
+@device_no_arrays
 def _centre_height(f: SurfacePoint, part: Part) -> tuple[float, float, float]:
     """From a part's place [m] to its centre of mass, in space."""
     s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
     return -part.centre * f.w_x / s, -part.centre * f.w_y / s, part.centre / s
 
 
-@device
+@device_no_arrays
 def centre_velocity(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The velocity [m/s] of the centre of mass of a flying part, seen from the base."""
     s_x, s_y = stretched(f, motion.v_x, motion.v_y)
@@ -92,7 +92,7 @@ def centre_velocity(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float,
     return s_x + part.centre * n_x, s_y + part.centre * n_y, motion.v_z + part.centre * n_z
 
 
-@device
+@device_no_arrays
 def from_centre_velocity(f: SurfacePoint, part: Part, u_x: float, u_y: float, u_z: float, out: Motion) -> None:
     """The velocity of a flying part's place, from that [m/s] of its centre of mass, into `out`."""
     out.v_x, out.v_y = unstretched(f, u_x, u_y)

@@ -29,7 +29,7 @@ from particle.events.memory import Memory
 from particle.events.polynomials import first_negative, quintic_between, quintic_value
 from particle.events.request import Request
 from particle.events.sliding import MIN_STEP
-from particle.jit import device, inlined
+from particle.jit import device, device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Verdict
 from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
 from particle.types import FloatArray
@@ -139,7 +139,7 @@ def _exit_share(surface: Surface, memory: Memory, part: Part, here: SurfacePoint
     return high
 
 
-@device
+@device_no_arrays
 def _height(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The height [m] over the surface of a flying part and its two derivatives in time."""
     v_x, v_y = motion.v_x, motion.v_y

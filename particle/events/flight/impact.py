@@ -10,14 +10,14 @@ import math
 
 from particle.events.flight.ballistics import centre_velocity, from_centre_velocity
 from particle.events.mechanics import Motion, Part, after_friction, by_centre, normal_rate, of_centre, rising, stretched
-from particle.jit import device, device_no_arrays, inlined
+from particle.jit import device_no_arrays, inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
 
 MIN_JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an impact, and jumps, are rounding
 
 
-@device
+@device_no_arrays
 def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     """The impact of a part at `motion` on the surface, in place; what it does then, should the contact last.
 

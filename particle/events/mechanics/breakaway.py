@@ -250,7 +250,7 @@ def _direction(u: float, h: Heading) -> tuple[float, float]:
     return along * h.e_x - back * h.n_x, along * h.e_y - back * h.n_y
 
 
-@inlined
+@device_no_arrays
 def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion) -> float:
     """The rate of a motion on the manifold, v_x of which is u, into `rate`; returns the load [N] as on a flat surface.
 

@@ -40,7 +40,7 @@ from particle.events.mechanics.parallel import (
     unstretched,
 )
 from particle.friction import FrictionLaw, Grip, grip
-from particle.jit import device_no_arrays, inlined, spliced
+from particle.jit import device_no_arrays, spliced
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 
@@ -67,7 +67,7 @@ class Pull(NamedTuple):
     speed: float  # m/s, sliding speed u
 
 
-@device_no_arrays
+@spliced
 def pull(f: SurfacePoint, v_x: float, v_y: float, part: Part) -> Pull:
     """Acceleration without friction, normal force and sliding speed."""
     a_x, a_y = f.base_ax - part.tilt_x, f.base_ay - part.tilt_y
@@ -156,7 +156,7 @@ def length(f: SurfacePoint, x: float, y: float) -> float:
     return math.sqrt(x * x + y * y + climb * climb)
 
 
-@inlined
+@spliced
 def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> float:
     """The rate of a sliding part's motion into `rate`, with f at (x, y); returns the load [N] as on a flat surface."""
     v_x, v_y = motion.v_x, motion.v_y
@@ -179,7 +179,7 @@ def braked(f: SurfacePoint, part: Part, p: Pull, slow: float, v_x: float, v_y: f
     return a_x, a_y, push(f, part, p.normal) - part.mass * drag(f, part, q_x, q_y)
 
 
-@device_no_arrays
+@spliced
 def grip_at(f: SurfacePoint, part: Part, load: float) -> Grip:
     """What the contact bears under a normal force [N]."""
     return grip(part.law, load, f.w_xx, f.w_xy, f.w_yy)

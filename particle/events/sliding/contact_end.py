@@ -58,23 +58,23 @@ def _locate_end(surface: Surface, part: Part, pair: Tableau, memory: Memory) -> 
     low, high = 0.0, h
     below, above = step.margins[last], margin(memory.local, part, step.loads[0], now.gap)
     secant = True
-    while high - low > 1e-15 * (time + high) and high - low > 1e-14 * h:
-        middle = 0.5 * (low + high)
-        if secant and above > 0.0:
+    while True:
+        located = not (high - low > 1e-15 * (time + high) and high - low > 1e-14 * h)
+        middle = high if located else 0.5 * (low + high)
+        if secant and above > 0.0 and not located:
             share = above / (above - below)
             # Never quite at an end, lest the other one stay for ever.
             middle = low + min(max(share, 1e-6), 1.0 - 1e-6) * (high - low)
         counts.evaluations += len(pair.c)
         good = attempt(surface, part, pair, memory, middle)
+        if located:
+            return high
         width = high - low
         if good and step.margins[last] < 0.0:
             high, below, above = middle, step.margins[last], 0.5 * above
         else:
             low, above, below = middle, (step.margins[last] if good else 0.0), 0.5 * below
         secant = high - low < 0.5 * width
-    counts.evaluations += len(pair.c)
-    attempt(surface, part, pair, memory, high)
-    return high
 
 
 @device_no_arrays

@@ -8,12 +8,12 @@ from particle.events.mechanics import INTEGRATED, Motion, Part, manifold_rate, m
 from particle.events.memory import Memory, Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
-from particle.jit import device_no_arrays, inlined
+from particle.jit import device_no_arrays, inlined, spliced
 from particle.modes import Mode
-from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_at, within_cell
+from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_here, within_cell
 
 
-@device_no_arrays
+@spliced
 def motion_rate(
     f: SurfacePoint, mode: int, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion
 ) -> float:
@@ -46,17 +46,20 @@ def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: floa
     stages = len(pair.c)
     stage: Motion = step.stage[0]
     for k in range(1, stages):
-        for i in range(INTEGRATED):
-            total = 0.0
-            for j in range(k):
-                total += pair.a[k, j] * step.rate_numbers[j, i]
-            step.stage_numbers[0, i] = memory.motion_numbers[0, i] + h * total
+        x = y = v_x = v_y = work = dissipated = 0.0
+        for j in range(k):
+            a, rate = pair.a[k, j], step.rates[j]
+            x, y, v_x, v_y = x + a * rate.x, y + a * rate.y, v_x + a * rate.v_x, v_y + a * rate.v_y
+            work, dissipated = work + a * rate.work, dissipated + a * rate.dissipated
+        stage.x, stage.y = motion.x + h * x, motion.y + h * y
+        stage.v_x, stage.v_y = motion.v_x + h * v_x, motion.v_y + h * v_y
+        stage.work, stage.dissipated = motion.work + h * work, motion.dissipated + h * dissipated
         if not within_cell(local, stage.x, stage.y):
             return False
         if dry and stage.v_x * motion.v_x + stage.v_y * motion.v_y <= 0.0:
             return False
         moment = time + pair.c[k] * h
-        f = surface_at(local, stage.x, stage.y, moment)
+        f = surface_here(local, stage.x, stage.y, moment)
         load = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = memory.now[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
