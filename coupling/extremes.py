@@ -17,6 +17,7 @@ from particle import AnyDrive
 FloatArray = NDArray[np.float64]
 
 MOMENTS, ACTUATORS = 16, 16  # that are looked at closely: so many of each
+ALIKE = 1e-9  # of the largest height: drives this close stand alike
 AROUND = 8  # points on each circle around one
 RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
 
@@ -72,13 +73,20 @@ def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
             np.maximum.at(row, pairs[:, side], mean)
     largest, highest = 0.0, float(np.abs(lifted).max())
     for measure in (slope, np.abs(lifted)):
-        for moment in np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]:
+        latest = np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]
+        for moment in latest[_unlike(heights[latest])]:
             centres = np.argsort(-measure[moment], kind="stable")[:ACTUATORS]
             xy = _circles(shapes, centres, nearest[centres])
             value, gradient, _ = shapes.evaluate(xy, heights[moment])
             largest = max(largest, float(np.hypot(*gradient.T).max(initial=0.0)))
             highest = max(highest, float(np.abs(value).max(initial=0.0)))
     return largest, highest
+
+
+def _unlike(heights: FloatArray) -> NDArray[np.int64]:
+    """The rows of heights (k, N) [m] that no earlier one equals, but for rounding: cycles repeat themselves."""
+    unit = ALIKE * np.abs(heights).max()
+    return np.sort(np.unique(np.round(heights / (unit or 1.0)), axis=0, return_index=True)[1])
 
 
 def _around(shapes: Shapes) -> FloatArray:

@@ -100,7 +100,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
     first = _first_frequency(plate, shapes)
     sag = part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force))))
-    driven = [drive for drive in drives if travel(drive) > 0] or drives
+    driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
     strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in driven])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +17,7 @@ from fem_plate.modes import HeldPlate
 from fem_plate.shapes import Shapes
 from fem_plate.types import FloatArray, IntArray
 
+SUMS = 16  # of all shapes, that are compared with those on finer cells where there are many
 CHUNK = 4096  # unknowns combined at a time
 RANK = 1e-9  # of rigid motions: smaller deflections are none
 MAX_DENSE = 2000  # actuators whose compliance and stiffness are worth a dense matrix
@@ -107,6 +110,31 @@ def _held_system(
     return basis, responses, compliance, motions, matrix
 
 
+def sums_on(model: PlateModel, coarse: InfluenceShapes, values: FloatArray, weights: FloatArray) -> FloatArray:
+    """What sums of shapes with weights (N, k) change by on a finer mesh, (n, k) at its points.
+
+    The coarse forces, taken over, leave the actuators off their heights by little; the coarse shapes bring them back,
+    but for the product of two errors. So there is one solution for each sum, and not one for each shape.
+
+    values: (n, N), of the coarse shapes at these points.
+    """
+    size, ratio, held = model.mesh.size, model.mesh.size / coarse.size, coarse.springs > 0
+    before = coarse.functions.weighted(weights)
+    x, forces = coarse.points / size, before.forces * ratio**2
+    after = replace(
+        before,
+        space=model.space,
+        unknowns=model.under_loads(x, forces),
+        sources=x,
+        forces=forces,
+        rigid=before.rigid * [[1.0], [ratio], [ratio]],
+        infinite=model.infinite,
+    )
+    give = coarse.stiffness_unit / ratio**2 / coarse.springs[held, None]
+    off = after.values(x)[held] + forces[held] * give - weights[held]
+    return np.asarray(after.values(model.space.points) - values[:, held] @ off - values @ weights)
+
+
 def unheld_shapes(
     model: PlateModel, x: FloatArray, stiffness: FloatArray, stiffness_unit: float
 ) -> tuple[PlateFunctions, FloatArray]:
@@ -141,6 +169,7 @@ class InfluenceShapes(Shapes, Estimated):
     unit force there [m/N].
 
     free_motions: whether the plate may be left rigid motions; then its shapes carry none of their momentum.
+    finer: the model on cells of half the size.
     """
 
     def __init__(
@@ -149,18 +178,35 @@ class InfluenceShapes(Shapes, Estimated):
         points: FloatArray,
         rigidity: float,
         actuator_stiffness: FloatArray,
-        free_motions: bool = False,
+        free_motions: bool,
+        finer: Callable[[], PlateModel],
     ) -> None:
-        self.model = model
+        self.model, self.finer = model, finer
         self.points = np.ascontiguousarray(points)  # kernels would be compiled anew for another layout
         self.size = model.mesh.size
         self.outline = model.mesh.outline
         self.springs = actuator_stiffness
-        self._stiffness_unit = rigidity / self.size**2  # N/m
+        self.stiffness_unit = rigidity / self.size**2  # N/m
         solve = unheld_shapes if free_motions else held_shapes
-        self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self._stiffness_unit)
+        self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self.stiffness_unit)
         self.strengths = model.infinite.logarithms(points / self.size)[:, None] * self.functions.forces
         self.rounding = model.rounding(points / self.size, actuator_stiffness > 0)
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Estimated largest error of w, relative to each shape's largest deflection.
+
+        It is the difference from the shapes on cells of half the size, which are computed on first use, and rounding.
+        Of many actuators it is the root of the sum of squares of all shapes' differences at the worst place, found from
+        random sums of them: as large as that of the worst shape, or somewhat larger.
+        """
+        if len(self.points) <= 2 * SUMS or self.rounding:  # that of actuators which all but coincide
+            return super().error_estimate
+        model = self.finer()
+        shapes = self.values(model.space.points * model.mesh.size)
+        signs = np.random.default_rng(0).choice([-1.0, 1.0], (len(self.points), SUMS))
+        off = sums_on(model, self, shapes, signs / np.abs(shapes).max(axis=0)[:, None])
+        return float(np.sqrt(np.square(off).mean(axis=1).max()))
 
     @property
     def compliance(self) -> FloatArray:
@@ -173,25 +219,25 @@ class InfluenceShapes(Shapes, Estimated):
         """
         if self.model.rigid.size:
             raise ValueError("Input supports of Plate must hold it without actuators for a compliance; they do not")
-        return self._green / self._stiffness_unit
+        return self._green / self.stiffness_unit
 
     @property
     def stiffness(self) -> FloatArray:
         """Force at i for a unit stroke of actuator j, (N, N) [N/m]; for a floating one, for a unit force."""
-        return self.functions.forces * self._stiffness_unit
+        return self.functions.forces * self.stiffness_unit
 
     def under_pressure(self, pressure: float) -> PlateFunctions:
         """The plate's deflection under a uniform pressure [Pa], up, while its actuators' strokes and forces are 0.
 
         Its value is in m, over places in `size`. Rigid actuators stay where they are and springs yield.
         """
-        scale = pressure * self.size**2 / self._stiffness_unit
-        unit = held_under_pressure(self.model, self.points / self.size, self.springs, self._stiffness_unit)
+        scale = pressure * self.size**2 / self.stiffness_unit
+        unit = held_under_pressure(self.model, self.points / self.size, self.springs, self.stiffness_unit)
         return unit.weighted(np.array([scale]))
 
     def pressure_forces(self, pressure: float) -> FloatArray:
         """The forces (N,) [N] on the plate with which actuators bear a uniform pressure [Pa]; 0 of floating ones."""
-        return np.asarray(self.under_pressure(pressure).forces[:, 0] * self._stiffness_unit)
+        return np.asarray(self.under_pressure(pressure).forces[:, 0] * self.stiffness_unit)
 
     def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
         return self._weighted(weights).evaluate(x)

@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import eigh
-from scipy.sparse import csc_matrix
+from scipy.sparse import csr_matrix, vstack
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
@@ -28,6 +28,7 @@ from fem_plate.types import BoolArray, FloatArray
 CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
 RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved to, out of the way
 MAX_MODES = 400  # so many responses are enough
+RESIDUAL = 1e-10  # of the largest of 1/omega^2: squared frequencies are as exact as its square, modes as itself
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
@@ -98,18 +99,22 @@ class HeldPlate:
         compliance = np.diag(rigidity / model.mesh.size**2 / stiffness)  # dimensionless, 1/k
         space, x = model.space, self.held
         self.mass = model.mass
-        self.responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
-        at_held = space.point_values(x)  # B
-        green = model.infinite.point_value(x, x) + at_held @ self.responses
+        responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
+        at_held = space.point_values(x).tocsr()  # B
+        green = model.infinite.point_value(x, x) + at_held @ responses
         inside = model.infinite.acts(x)
         on_rim, both = ~inside, np.ix_(inside, inside)
         yielding = (green + green.T)[both] / 2 + compliance[both]  # G + 1/k
-        self._to_forces = np.zeros((len(x), model.unknowns))  # v -> c
-        self._to_forces[inside] = -np.linalg.solve(yielding, at_held[inside].toarray())
-        self._of_singular, inner = singular_masses(model, x, x)
-        carried = self._of_singular.T @ self.responses
-        self._cross = self.mass @ self.responses + self._of_singular  # int q psi_j
-        self._inner = self.responses.T @ (self.mass @ self.responses) + carried + carried.T + inner  # int psi_i psi_j
+        # The plate raised by 1 at each held point inside, of all the others at rest: phi, its part without F.
+        self._forces = np.zeros((len(x), int(inside.sum())))
+        self._forces[inside] = np.linalg.inv(yielding)
+        self._raised = responses @ self._forces
+        self._to_heights = -at_held[inside]  # v -> how far each phi is raised
+        of_singular, inner = singular_masses(model, x, x)
+        self._of_singular, inner = of_singular @ self._forces, self._forces.T @ inner @ self._forces
+        carried = self._of_singular.T @ self._raised
+        self._cross = self.mass @ self._raised + self._of_singular  # int q phi_j
+        self._inner = self._raised.T @ (self.mass @ self._raised) + carried + carried.T + inner  # int phi_i phi_j
         rigid = _free_motions(model, at_held)
         inertia = self.with_mass(rigid)
         if rigid.size:
@@ -117,15 +122,15 @@ class HeldPlate:
         # K's inverse knows the springs spread under the plate and not the held points. Rows of correction turn it into
         # the inverse of the modes' stiffness: the held points, the load that their forces put on the spread springs
         # (what psi_j weighs on each motion), and the rigid motions, moved out of the way.
-        on_springs = model.mean.T + model.motions(x).T @ self._to_forces
-        heights = at_held.toarray()
-        heights[on_rim] += green[on_rim] @ self._to_forces  # of w, which a spring of 1/k holds there
-        rows = np.concatenate([heights, on_springs, inertia.T])
-        weights = np.zeros((len(rows), len(rows)))
+        on_springs = model.mean + self._to_heights.T @ (self._forces.T @ model.motions(x))
+        held_by_rim = csr_matrix(np.where(on_rim[:, None], green @ self._forces, 0.0))
+        heights = at_held + held_by_rim @ self._to_heights  # of w, which a spring of 1/k holds on the rim
+        rows = vstack([heights, csr_matrix(on_springs.T), csr_matrix(inertia.T)]).tocsr()
+        weights = np.zeros((rows.shape[0],) * 2)
         weights[: len(x), : len(x)][both] = yielding
         weights[: len(x), : len(x)][np.ix_(on_rim, on_rim)] = -compliance[np.ix_(on_rim, on_rim)]
         weights[len(x) :, len(x) :] = np.diag(
-            np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
+            np.concatenate([np.ones(on_springs.shape[1]), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
         )
         self.solve = _corrected(model.solve, rows, weights)
 
@@ -135,8 +140,8 @@ class HeldPlate:
 
     def with_mass(self, v: FloatArray) -> FloatArray:
         """The inertial load (unknowns, ...) of v, the integrals of its trial functions with all of them."""
-        c = self._to_forces @ v
-        return np.asarray(self.mass @ v + self._cross @ c + self._to_forces.T @ (self._cross.T @ v + self._inner @ c))
+        c = self._to_heights @ v
+        return np.asarray(self.mass @ v + self._cross @ c + self._to_heights.T @ (self._cross.T @ v + self._inner @ c))
 
     def inertia_of(self, functions: PlateFunctions) -> FloatArray:
         """The integrals (unknowns, k) of k functions of the same model, without pressure, with all trial functions."""
@@ -144,17 +149,17 @@ class HeldPlate:
         smooth = functions.unknowns + model.space.linear() @ functions.rigid
         with_singular, inner = singular_masses(model, functions.sources, self.held)
         direct = self.mass @ smooth + with_singular @ forces
-        of_responses = self.responses.T @ direct + self._of_singular.T @ smooth + inner.T @ forces
-        return np.asarray(direct + self._to_forces.T @ of_responses)
+        of_raised = self._raised.T @ direct + self._of_singular.T @ smooth + self._forces.T @ (inner.T @ forces)
+        return np.asarray(direct + self._to_heights.T @ of_raised)
 
     def functions(self, vectors: FloatArray) -> tuple[PlateFunctions, FloatArray]:
         """The functions of vectors (unknowns, k), each 1 at most over the mesh's points, and what they were (k,)."""
-        forces, count = self._to_forces @ vectors, vectors.shape[1]
+        heights, count = self._to_heights @ vectors, vectors.shape[1]
         whole = PlateFunctions(
             self.model.space,
-            vectors + self.responses @ forces,
+            vectors + self._raised @ heights,
             self.held,
-            forces,
+            self._forces @ heights,
             np.zeros((3, count)),
             np.zeros(count),
             self.model.infinite,
@@ -177,6 +182,7 @@ def modes(held_plate: HeldPlate, count: int, inertia: float, refine: Callable[[]
         sigma=0,
         OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
         v0=np.ones(unknowns),  # eigsh would start from a random vector, and differ from run to run
+        tol=RESIDUAL,
     )
     order = np.argsort(squares)
     functions, _ = held_plate.functions(vectors[:, order])
@@ -188,15 +194,17 @@ def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[Fl
     space = model.space
     (points, weights), triangles = model.masses, space.quadrature_triangles
     with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(y)))
+    same = x is y
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
-        weighted = weights[part, None] * model.infinite.point_value(points[part], x)
+        singular = model.infinite.point_value(points[part], x)
+        weighted = weights[part, None] * singular
         with_singular += space.point_values(points[part], triangles[part]).T @ weighted
-        of_singular += weighted.T @ model.infinite.point_value(points[part], y)
+        of_singular += weighted.T @ (singular if same else model.infinite.point_value(points[part], y))
     return with_singular, of_singular
 
 
-def _free_motions(model: PlateModel, at_held: csc_matrix) -> FloatArray:
+def _free_motions(model: PlateModel, at_held: csr_matrix) -> FloatArray:
     """The rigid motions (unknowns, f) that neither the supports nor the held points stop."""
     rigid = model.space.linear() @ model.rigid
     if not rigid.size or not at_held.shape[0]:
@@ -207,10 +215,10 @@ def _free_motions(model: PlateModel, at_held: csc_matrix) -> FloatArray:
 
 
 def _corrected(
-    solve: Callable[[FloatArray], FloatArray], rows: FloatArray, weights: FloatArray
+    solve: Callable[[FloatArray], FloatArray], rows: csr_matrix, weights: FloatArray
 ) -> Callable[[FloatArray], FloatArray]:
     """The inverse of A - rows^T weights^-1 rows from that of A (Sherman-Morrison-Woodbury)."""
-    solved = solve(np.ascontiguousarray(rows.T))
+    solved = solve(rows.toarray().T)
     correction = np.linalg.inv(weights - rows @ solved)
 
     def corrected(load: FloatArray) -> FloatArray:

@@ -161,7 +161,12 @@ class Plate(GradedPlate):
             rigidity = self.section.rigidity
             shapes = refined(
                 lambda halvings: InfluenceShapes(
-                    self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
+                    self.model(points, halvings),
+                    points,
+                    rigidity,
+                    actuator_stiffness,
+                    free_motions,
+                    partial(self.model, points, halvings + 1),
                 ),
                 self.tolerance,
                 self.gain,

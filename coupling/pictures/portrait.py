@@ -102,7 +102,7 @@ def _of_result(result: Result) -> Portrait:
     scene, trajectory, surface = result.scene, result.trajectory, result.ground
     moment, end = deflected_most(scene, surface.deflection, result.frames), float(trajectory.time[-1])
     drives = [*scene.lifts, *scene.base]
-    cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
+    cycles = end * max(drive.frequency for drive in dict.fromkeys(drives) if travel(drive) > 0 or drive is drives[0])
     count = int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))
     samples = trajectory.at(even_times(trajectory.time, count, trajectory.events))
     plate = None
@@ -227,7 +227,8 @@ def chosen_drives(case: Case, lifts: Sequence[AnyDrive], margins: Margins) -> di
     """The drives whose heights are drawn, by name: all of a few, of many those whose margins count."""
     if not case.actuators:
         return {"platform": lifts[0]}
-    moving = [k for k, drive in enumerate(lifts) if case.actuators[k].force is None and travel(drive) > 0]
+    moves = {drive: travel(drive) > 0 for drive in dict.fromkeys(lifts)}  # many of a lattice are equal
+    moving = [k for k, drive in enumerate(lifts) if case.actuators[k].force is None and moves[drive]]
     if len(moving) > MAX_DRIVES:
         named = {one.actuator for one in (margins.slip, margins.contact) if one is not None} & set(moving)
         places = np.array([case.actuators[k].position for k in moving]) - case.part.position

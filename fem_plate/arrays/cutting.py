@@ -30,6 +30,14 @@ class Cut:
     name: bytes  # differs for patches with equal boxes and actuators that are not alike
     sides: Mapping[str, str]  # of a rectangle, the boundary on each side; empty for a part of the plate's mesh
 
+    def seen(self, turn: FloatArray) -> bytes:
+        """The name of a rectangle seen in coordinates that are these times 1 or -1, (2,)."""
+        if (turn > 0).all():
+            return self.name
+        left, right, bottom, top = self.name.split(b",")
+        along, across = [left, right][:: int(turn[0])], [bottom, top][:: int(turn[1])]
+        return b",".join([*along, *across])
+
 
 class Cutter:
     """Cuts patches out of a plate for an array of actuators.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import coo_matrix, csr_matrix, vstack
 
 from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
 from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile, spacing
@@ -99,12 +99,12 @@ class PatchedShapes(Shapes):
             np.zeros((len(x), width, 2)),
             np.zeros((len(x), width, 2, 2)),
         )
-        for functions, entries, x_patch, ratio in self._pieces(x, weights):
+        for functions, entries, x_patch, scale in self._pieces(x, weights):
             w, w_grad, w_hess = functions.evaluate(x_patch)  # at actuators the Hessians are infinite
             value[entries] += w
-            gradient[entries] += w_grad * ratio
+            gradient[entries] += w_grad * scale
             with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
-                hessian[entries] += w_hess * ratio**2
+                hessian[entries] += w_hess * np.outer(scale, scale)
         return value, gradient, hessian
 
     def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
@@ -114,10 +114,10 @@ class PatchedShapes(Shapes):
             value[entries] += functions.values(x_patch)
         return value
 
-    def matrix(self, xy: ArrayLike, least: float = 0.0) -> csr_matrix:
-        """The shapes' values as a sparse matrix.
+    def matrix(self, xy: ArrayLike, least: float = 0.0, weights: FloatArray | None = None) -> csr_matrix | FloatArray:
+        """The shapes' values as a sparse matrix, or the values of their weighted sums.
 
-        Like patches with points in like places, as on a grid in step with the array, are evaluated once.
+        Points in like places of like patches, as on a grid in step with the array, are evaluated once.
 
         Parameters
         ----------
@@ -125,48 +125,67 @@ class PatchedShapes(Shapes):
             Points [m].
         least : float
             Leave out entries below this fraction of the shape's value at its own actuator.
+        weights : (N, k) array, optional
+            Weights of k sums of the shapes.
 
         Returns
         -------
-        (n, N) sparse matrix
+        (n, N) sparse matrix, or (n, k) array with weights
         """
-        return self._sparse(xy, _values, least)
+        return self._sparse(xy, _values, least, weights)
 
-    def laplacians(self, xy: ArrayLike, floor: float, least: float = 0.0) -> csr_matrix:
-        """The shapes' Laplacians as a sparse matrix.
+    def laplacians(
+        self, xy: ArrayLike, floor: float, least: float = 0.0, weights: FloatArray | None = None
+    ) -> csr_matrix | FloatArray:
+        """The shapes' Laplacians as a sparse matrix, or those of their weighted sums.
 
         Parameters
         ----------
-        xy, least
+        xy, least, weights
             As for `matrix`.
         floor : float
             As for `InfluenceShapes.laplacians` [m].
 
         Returns
         -------
-        (n, N) sparse matrix
-            [1/m^2].
+        (n, N) sparse matrix, or (n, k) array with weights
+            [1/m^2]; with weights, times their unit.
         """
-        return self._sparse(
-            xy, lambda patch, x: patch.functions.laplacians(x, floor / patch.size) / patch.size**2, least
-        )
 
-    def _sparse(self, xy: ArrayLike, function: PatchFunction, least: float) -> csr_matrix:
-        """A function of a patch's shapes at points (n, 2) [m], as a matrix (n, N)."""
+        def laplacians(patch: Patch, x: FloatArray) -> FloatArray:
+            return patch.functions.laplacians(x, floor / patch.size) / patch.size**2
+
+        return self._sparse(xy, laplacians, least, weights)
+
+    def _sparse(
+        self, xy: ArrayLike, function: PatchFunction, least: float, weights: FloatArray | None
+    ) -> csr_matrix | FloatArray:
+        """A function of a patch's shapes at points (n, 2) [m], as a matrix (n, N), or its sums with weights (N, k)."""
         xy = np.asarray(xy, dtype=float)
-        cache: dict[tuple[int, bytes], tuple[IntArray, IntArray, FloatArray]] = {}
-        entries = []
+        alike: dict[int, list[tuple[Tile, FloatArray, IntArray]]] = {}
         for tile in self.tiles:
-            patch, core = tile.patch, tile.rows[tile.patch.core]
             x, on_patch = self._within(tile, xy)
-            key = id(patch), np.round(x[on_patch], PLACE_DIGITS).tobytes()
-            if key not in cache:
-                cache[key] = _entries(partial(function, patch), x[on_patch], least * _at_own(function, patch))
-            row, column, value = cache[key]
-            entries.append((value, on_patch[row].astype(np.int32), core[column].astype(np.int32)))
+            alike.setdefault(id(tile.patch), []).append((tile, x[on_patch], on_patch))
+        sums = None if weights is None else np.zeros((len(xy), weights.shape[1]))
+        entries = []
+        for tiles in alike.values():
+            patch = tiles[0][0].patch
+            spots = np.concatenate([x for _, x, _ in tiles])
+            at = np.ascontiguousarray(np.round(spots, PLACE_DIGITS) + 0.0).view(complex)[:, 0]
+            _, first, which = np.unique(at, return_index=True, return_inverse=True)
+            values = _entries(partial(function, patch), spots[first], least * _at_own(function, patch))
+            ends = np.cumsum([len(on_patch) for _, _, on_patch in tiles])[:-1]
+            for (tile, _, on_patch), rows in zip(tiles, np.split(which, ends), strict=True):
+                core, own = tile.rows[patch.core], values[rows]
+                if sums is not None and weights is not None:
+                    sums[on_patch] += own @ weights[core]
+                else:
+                    row = np.repeat(on_patch, np.diff(own.indptr)).astype(np.int32)
+                    entries.append((own.data, row, core[own.indices].astype(np.int32)))
+        if sums is not None:
+            return sums
         flat = [np.concatenate(parts) for parts in zip(*entries, strict=True)]
-        cache.clear()  # to make room for the matrix
-        entries.clear()
+        entries.clear()  # to make room for the matrix
         return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(xy), len(self.points))).tocsr()
 
     def compliance_at(self, place: ArrayLike) -> float:
@@ -197,18 +216,18 @@ class PatchedShapes(Shapes):
 
     def _pieces(
         self, x: FloatArray, weights: FloatArray | None
-    ) -> Iterator[tuple[PlateFunctions, Any, FloatArray, float]]:
-        """Yield what each tile adds at x (n, 2): functions, entries to add to, points, and the ratio of sizes."""
+    ) -> Iterator[tuple[PlateFunctions, Any, FloatArray, FloatArray]]:
+        """Yield what each tile adds at x (n, 2): functions, entries to add to, points, and their scales (2,) by x."""
         for tile in self.tiles:
             patch = tile.patch
-            ratio, core = self.size / patch.size, tile.rows[patch.core]
+            scale, core = self.size / patch.size * tile.turn, tile.rows[patch.core]
             if weights is not None and not weights[core].any():
                 continue
             x_patch, on_patch = self._within(tile, x * self.size)
             if on_patch.size and weights is None:
-                yield patch.functions, np.ix_(on_patch, core), x_patch[on_patch], ratio
+                yield patch.functions, np.ix_(on_patch, core), x_patch[on_patch], scale
             elif on_patch.size and weights is not None:
-                yield patch.functions.weighted(weights[core]), on_patch, x_patch[on_patch], ratio
+                yield patch.functions.weighted(weights[core]), on_patch, x_patch[on_patch], scale
 
     def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         rows, values = [np.zeros(0, dtype=np.int64)], [np.zeros((len(xy), 0))]
@@ -229,7 +248,7 @@ class PatchedShapes(Shapes):
     def _within(self, tile: Tile, xy: FloatArray) -> tuple[FloatArray, IntArray]:
         """Points (n, 2) [m] in the dimensionless coordinates of a tile's patch, and the rows of those on it."""
         patch = tile.patch
-        x, box = (xy - tile.cut.origin) / patch.size, patch.box / patch.size
+        x, box = (xy - tile.cut.origin) * tile.turn / patch.size, patch.box / patch.size
         in_box = np.flatnonzero(((x >= box[0] - SLACK) & (x <= box[1] + SLACK)).all(axis=1))
         return x, in_box[patch.functions.space.holds(x[in_box])] if in_box.size else in_box
 
@@ -246,17 +265,13 @@ def _at_own(function: PatchFunction, patch: Patch) -> FloatArray:
     return np.abs(np.diag(function(patch, patch.actuators[patch.core] / patch.size)))
 
 
-def _entries(
-    function: Callable[[FloatArray], FloatArray], x: FloatArray, floor: FloatArray
-) -> tuple[IntArray, IntArray, FloatArray]:
-    """Rows, columns and values of k functions at points (n, 2) that exceed the floor (k,)."""
-    entries = [(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))]
+def _entries(function: Callable[[FloatArray], FloatArray], x: FloatArray, floor: FloatArray) -> csr_matrix:
+    """The values (n, k) of k functions at points (n, 2) that exceed the floor (k,)."""
+    parts = [csr_matrix((0, len(floor)))]
     for start in range(0, len(x), CHUNK):
         values = function(x[start : start + CHUNK])
-        row, column = np.nonzero(np.abs(values) > floor)
-        entries.append((row + start, column, values[row, column]))
-    row, column, value = (np.concatenate(parts) for parts in zip(*entries, strict=True))
-    return row, column, value
+        parts.append(csr_matrix(np.where(np.abs(values) > floor, values, 0.0)))
+    return vstack(parts).tocsr()
 
 
 def patched_shapes(

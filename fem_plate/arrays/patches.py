@@ -28,7 +28,7 @@ MIN_MARGIN = 3.0
 WIDENING = 2.0  # pitches added to a margin that was too narrow; twice as many each time
 CUT_CLEARANCE = 0.75  # pitches: actuators closer to a cut are left out, as the cut holds the plate there
 NEIGHBOURS = 8  # the closest actuators, one of which holds the plate best
-COMPARED, REACHED = 5.5, 8.5  # pitches that actuators, and a patch, extend whose shapes on two meshes are compared
+COMPARED, REACHED = 2.5, 5.5  # pitches that actuators, and a patch, extend whose shapes on two meshes are compared
 COMPLIANCE_TRUNCATION = 1e-3
 MIN_REACH = 6.0  # pitches that a piece of plate extends at least whose first mode is computed
 MAX_HOLDING = 1000  # actuators that hold it
@@ -56,6 +56,7 @@ class Tile:
     patch: Patch
     cut: Cut
     rows: IntArray
+    turn: FloatArray  # (2,) of 1 and -1: the patch's coordinates over the tile's, which may be its mirror image
 
 
 class ActuatorArray:
@@ -76,6 +77,9 @@ class ActuatorArray:
         self.cutter, self.points, self.actuator_stiffness = cutter, points, actuator_stiffness
         self.rigidity, self.law, self.tension = rigidity, law, tension
         self._tree = cKDTree(points)
+        # How a patch may be seen: as it is, or mirrored where the plate bends alike both ways.
+        both = np.array([[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]])
+        self._turns = both[: 1 if law[1, [0, 2]].any() else 4]
         self._solved: dict[bytes, Patch] = {}
 
     def tiles(self, truncation: float, tell: ProgressCallback) -> list[Tile]:
@@ -131,14 +135,23 @@ class ActuatorArray:
         return cut, rows[on_patch]
 
     def _tile(self, middle: FloatArray, reach: FloatArray, inside: IntArray) -> Tile:
-        pitch = self.cutter.pitch
         cut, rows = self.cut_out(middle, reach)
-        core = np.isin(rows, inside)
-        places = np.round(np.concatenate([cut.box, self.points[rows] - cut.origin]) / pitch, PITCH_DIGITS) + 0.0
-        key = cut.name + places.tobytes() + self.actuator_stiffness[rows].tobytes() + core.tobytes()
-        if key not in self._solved:
-            self._solved[key] = self._solve(self.cutter, cut, rows, np.flatnonzero(core))
-        return Tile(self._solved[key], cut, rows)
+        ways = [self._seen(cut, rows, inside, turn) for turn in self._turns if cut.sides or (turn > 0).all()]
+        for (key, turned), turn in zip(ways, self._turns, strict=False):
+            if key in self._solved:
+                return Tile(self._solved[key], cut, turned, turn)
+        patch = self._solve(self.cutter, cut, rows, np.flatnonzero(np.isin(rows, inside)))
+        self._solved[ways[0][0]] = patch
+        return Tile(patch, cut, rows, self._turns[0])
+
+    def _seen(self, cut: Cut, rows: IntArray, inside: IntArray, turn: FloatArray) -> tuple[bytes, IntArray]:
+        """What a patch is known by, seen one way round, and the rows of its actuators in the order of their places."""
+        places = np.round((self.points[rows] - cut.origin) * turn / self.cutter.pitch, PITCH_DIGITS) + 0.0
+        order = np.lexsort(places.T)
+        box = np.round(np.sort(cut.box * turn, axis=0) / self.cutter.pitch, PITCH_DIGITS) + 0.0
+        rows = rows[order]
+        alike = box, places[order], self.actuator_stiffness[rows], np.isin(rows, inside)
+        return cut.seen(turn) + b"".join(array.tobytes() for array in alike), rows
 
     def difference(self, tile: Tile) -> float:
         """The largest change of shapes on cells of half the size, around their actuators, over their largest.

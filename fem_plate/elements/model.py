@@ -169,12 +169,16 @@ class PlateModel:
     def _load(self) -> csc_matrix:
         return self.space.load(self.law, self.tension)
 
-    def _smooth_parts(self, known: list[list[FloatArray]]) -> FloatArray:
-        """The parts (unknowns, k) that make k known functions, by their derivatives at the rim, meet the supports."""
-        traces = [rim_traces(derivatives, self.space.rim.normal, self.law).ravel() for derivatives in known]
+    def _traces(self, known: list[list[FloatArray]]) -> FloatArray:
+        """The traces (t, k) at the rim of k known functions, from their derivatives there."""
+        rows = [rim_traces(derivatives, self.space.rim.normal, self.law).ravel() for derivatives in known]
+        return np.stack(rows, axis=1)
+
+    def _smooth_parts(self, traces: FloatArray) -> FloatArray:
+        """The parts (unknowns, k) that make k known functions, by their traces (t, k), meet the supports."""
         if isinstance(self.space, EnrichedSpace):
-            return self.space.follow(-np.stack(traces, axis=1))
-        return self.solve(-(self._load @ np.stack(traces, axis=1)))
+            return self.space.follow(-traces)
+        return self.solve(-(self._load @ traces))
 
     def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:
         """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2), or to those of a basis."""
@@ -199,8 +203,25 @@ class PlateModel:
             for k, parent, length in () if basis is None else basis.within(part):
                 rest = self.infinite.point_derivatives(rim, sources[parent])
                 known[k - start] = [(one - other) / length for one, other in zip(known[k - start], rest, strict=True)]
-            responses[:, part.start : part.stop] = self._smooth_parts(known)
+            responses[:, part.start : part.stop] = self._smooth_parts(self._traces(known))
         return responses
+
+    def under_loads(self, sources: FloatArray, forces: FloatArray) -> FloatArray:
+        """The smooth parts (unknowns, k) of the responses to k sets of forces (N, k) at sources (N, 2)."""
+        if self.form is not None:
+            responses = self.solve(self.form.loads(sources, self.infinite) @ forces)
+        else:
+            rim = self.space.rim.points
+            traces = sum(
+                self._traces([self.infinite.point_derivatives(rim, source)]) * at_source
+                for source, at_source in zip(sources, forces, strict=True)
+            )
+            responses = self._smooth_parts(np.asarray(traces))
+        if (at_rim := ~self.infinite.acts(sources)).any():
+            responses += self.solve(np.asarray(self.space.point_values(sources[at_rim]).T @ forces[at_rim]))
+        if not self.rigid.size:
+            return responses
+        return responses - self.space.linear() @ (self.rigid @ (self._known_means(sources) @ forces))
 
     def _known_means(self, sources: FloatArray) -> FloatArray:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).
@@ -223,7 +244,9 @@ class PlateModel:
         """The smooth part (unknowns, 1) of the response to a unit pressure."""
         if self.form is not None:
             return self.solve(self.space.mass() @ self.space.linear()[:, :1])
-        return self._smooth_parts([self.infinite.pressure_derivatives(self.space.rim.points - self.space.middle)])
+        return self._smooth_parts(
+            self._traces([self.infinite.pressure_derivatives(self.space.rim.points - self.space.middle)])
+        )
 
     def motions(self, xy: FloatArray) -> FloatArray:
         """The rigid motions at points (n, 2): (n, r)."""

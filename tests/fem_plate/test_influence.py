@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from fem_plate import Plate
+from fem_plate import Plate, PlateSection
 from fem_plate.analytic import DiscShapes
-from meshes import disc
+from fem_plate.influence import SUMS
+from meshes import disc, polygon, rectangle
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +94,31 @@ def test_the_error_estimate_is_within_a_factor_3_of_the_error(section, layout, r
     shapes = Plate(disc(radius, radius / cells), section).influence(layout)
     error = np.abs(shapes.evaluate(spots)[0] - exact.evaluate(spots)[0]).max()
     assert error / 3 < shapes.error_estimate < 3 * error
+
+
+L = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
+RNG = np.random.default_rng(3)
+SCATTERED = RNG.uniform(-0.6, 0.6, (36, 2))
+KINDS = RNG.choice([np.inf, 2e7, 0.0], 36, p=[0.5, 0.3, 0.2])  # N/m
+
+
+@pytest.mark.parametrize(
+    ("mesh", "supports", "points", "springs"),
+    [
+        (rectangle(2.0, 2.0, 0.4), "clamped", 0.26 * (np.indices((6, 6)).reshape(2, -1).T - 2.5), None),
+        (disc(1.0, 0.4), "free", SCATTERED, KINDS),
+        (
+            polygon(L, 0.3),
+            "clamped",
+            [p for p in 0.2 * np.indices((9, 9)).reshape(2, -1).T + 0.2 if min(p) < 0.9],
+            None,
+        ),
+    ],
+)
+def test_the_error_estimate_of_many_actuators_is_about_that_of_all_their_shapes(mesh, supports, points, springs):
+    shapes = Plate(mesh, PlateSection(1e11, 0.3, 0.01), supports).influence(points, springs)
+    of_all = shapes.refine().difference(shapes)
+    assert len(points) > 2 * SUMS and 0.8 * of_all < shapes.error_estimate < 2 * of_all
 
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-8])

@@ -56,6 +56,19 @@ def test_tiles_that_look_alike_share_a_patch(shapes):
     assert np.concatenate([np.sort(tile.rows[tile.patch.core]) for tile in shapes.tiles]).tolist() == list(range(60))
 
 
+def test_tiles_that_mirror_each_other_share_a_patch_whose_fields_are_turned(row, shapes):
+    first, last = shapes.tiles[0], shapes.tiles[-1]
+    assert first.patch is last.patch and unlike(shapes) <= 3
+    assert (first.turn * last.turn).tolist() == [-1.0, 1.0]
+    dense, weights = row.influence(lattice(60, 1)), np.random.default_rng(0).uniform(-1, 1, 60)
+    for sign in (-1, 1):
+        spots = np.random.default_rng(1).uniform([26, -1.5], [30, 1.5], (40, 2)) * PITCH * [sign, 1]
+        for order, (found, truth) in enumerate(
+            zip(shapes.evaluate(spots, weights), dense.evaluate(spots, weights), strict=True)
+        ):
+            assert np.abs(found - truth).max() * PITCH**order < 3e-3 * 3**order
+
+
 @pytest.mark.slow
 def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row):
     rng = np.random.default_rng(2)
