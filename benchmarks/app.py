@@ -2,12 +2,14 @@
 
 A headless Chromium moves the slider of an actuator's frequency 60 times a second, then drags an actuator. Each delay is
 from the event of the input to the frame that has the path, as the page itself measures it. First the numbers on the
-page are compared with those of a run.
+page are compared with those of a run. Last, a device of 190 periods, whose path is estimated while a slider moves: how
+far off estimates end for random strokes, delays, parts, friction and places, with one frequency for all drives or not.
 
     python benchmarks/app.py [seconds]
 """
 
 import json
+import math
 import shutil
 import subprocess
 import sys
@@ -17,6 +19,9 @@ from pathlib import Path
 
 import numpy as np
 from selenium import webdriver
+
+from active_surface.app.leaps import leaped
+from coupling import SolvedPlates, build_friction, follow_part, read_case
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "reference"))
 import app_case  # noqa: E402
@@ -29,6 +34,7 @@ for of_tests, here in (
     ('model = "constant"\nlimit = "40 nN"', 'model = "kogut-etsion"\npreset = "paper"'),
 ):
     PART = PART.replace(of_tests, here)
+ESTIMATES = 40  # of each kind
 ACTUATOR = """
 [[actuators]]
 position = ["{x:g} um", "{y:g} um"]
@@ -86,8 +92,8 @@ def write_case(folder, count):
     return path
 
 
-def measure(driver, case, seconds):
-    """Delays [ms] of a slider and of an actuator that is dragged, on the page of a case."""
+def measure(driver, case, seconds, *fields):
+    """Delays [ms] of sliders and of an actuator that is dragged, on the page of a case."""
     command = [sys.executable, "-m", "active_surface", "app", str(case), "--no-browser"]
     program = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
@@ -101,9 +107,11 @@ def measure(driver, case, seconds):
             ).stdout
         )  # fmt: skip
         assert (shown["distance"], shown["end"]) == (figures["distance"], figures["end_position"])
-        found = [driver.execute_async_script(MOVE, "actuators.0.frequency", seconds)]
-        time.sleep(3)
-        found.append(driver.execute_async_script(DRAG, seconds))
+        found = {}
+        for field in fields:
+            found[field] = driver.execute_async_script(MOVE, field, seconds)[1]
+            time.sleep(3)
+        found["an actuator's place"] = driver.execute_async_script(DRAG, seconds)[1]
         return found
     finally:
         program.terminate()
@@ -118,6 +126,28 @@ def ready(driver):
         time.sleep(0.1)
 
 
+def estimate_errors(path):
+    """How far off estimates of a device end, over the distance [1], and how many are beyond what they state."""
+    case, plates, chance = read_case(path), SolvedPlates(), np.random.default_rng(1)
+    for frequencies in ("one frequency", "unlike frequencies"):
+        off, beyond = [], 0
+        while len(off) < ESTIMATES:
+            changes = {f"actuators.{k}.stroke": f"{chance.uniform(1, 4)} um" for k in (0, 3, 6)}
+            changes |= {f"actuators.{k}.delay": f"{chance.uniform(0, 60)} us" for k in range(9)}
+            if frequencies == "unlike frequencies":
+                changes |= {f"actuators.{k}.frequency": f"{chance.uniform(3.8, 4.2)} kHz" for k in range(9)}
+            changes |= {"part.mass": f"{chance.uniform(1, 2.5)} ug", "friction.coefficient": chance.uniform(0.1, 0.4)}
+            changes |= {f"part.position.{k}": f"{chance.uniform(-300, 300)} um" for k in range(2)}
+            varied = case.vary(changes)
+            surface, law = plates.scene(varied).surface, build_friction(varied)
+            found, exact = leaped(varied, surface, law), follow_part(varied, surface, law)
+            if exact.distance > 1e-6:
+                gap = math.dist(found.path.position[-1], exact.position[-1])
+                off.append(gap / exact.distance)
+                beyond += gap > found.error
+        print(f"estimates, {frequencies}: median {np.median(off):.2%}, largest {max(off):.2%}, beyond stated {beyond}")
+
+
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
     options = webdriver.ChromeOptions()
@@ -125,16 +155,19 @@ def main():
         options.add_argument(f"--{flag}")
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
     driver.set_script_timeout(10 * seconds)
-    print("actuators  what      paths/s  median [ms]  95 % [ms]  largest [ms]")
+    print("device      what                     paths/s  median [ms]  95 % [ms]  largest [ms]")
     try:
         with tempfile.TemporaryDirectory() as folder:
-            for count in LAYOUTS:
-                for what, (_, delays) in zip(
-                    ("slider", "actuator"), measure(driver, write_case(folder, count), seconds), strict=True
-                ):
+            device = Path(folder, "device.toml")
+            device.write_text(app_case.DEVICE)
+            cases = {f"{count} actuators": [write_case(folder, count), "actuators.0.frequency"] for count in LAYOUTS}
+            cases["190 periods"] = [device, "actuators.0.stroke", "friction.coefficient", "part.mass"]
+            for name, (path, *fields) in cases.items():
+                for what, delays in measure(driver, path, seconds, *fields).items():
                     median, most = np.percentile(delays, [50, 95])
                     rate = len(delays) / seconds
-                    print(f"{count:9}  {what:8}  {rate:7.1f}  {median:11.0f}  {most:9.0f}  {max(delays):12.0f}")
+                    print(f"{name:12}{what:21}  {rate:10.1f}  {median:11.0f}  {most:9.0f}  {max(delays):12.0f}")
+            estimate_errors(device)
     finally:
         driver.quit()
 

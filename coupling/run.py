@@ -10,10 +10,12 @@ import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from warnings import warn
 
-from threadpoolctl import threadpool_limits
+import scipy.linalg  # noqa: F401 (its BLAS is among those whose threads are limited)
+from threadpoolctl import ThreadpoolController
 
 import particle
 from coupling.case import Case, PlatformCase, RunCase
@@ -96,9 +98,12 @@ def check_case(case: object, where: str) -> None:
         raise ValueError(f"Input {where} must be a Case, as read_case reads it from a file; got {case!r}")
 
 
+_threads = cache(ThreadpoolController)  # 5 ms to make
+
+
 def one_blas_thread() -> AbstractContextManager[object]:
     """Has BLAS use one thread in its block: with many small systems several take two to four times as long."""
-    return threadpool_limits(limits=1, user_api="blas")
+    return _threads().limit(limits=1, user_api="blas")
 
 
 def run_over(

@@ -16,13 +16,13 @@ from coupling.case import Case, common_period
 from particle import AnyDrive, State, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
-LEAPS: Final = 8  # over a whole path, where none is halved
+LEAPS: Final = 5  # over a whole path, where none is halved
 BEFORE, BETWEEN, AFTER = 3, 2, 2  # periods that are followed at the start, after each leap and at the end
 BENT: Final = 0.25  # of a leap: a longer correction is not small
 NOTHING: Final = 1e-9  # m, and one so short is
 MANY: Final = 12  # periods of the drives in a run: with fewer in common they count as having none in common
-SURE, UNSURE = 0.25, 2.0  # of all corrections: the error, with a common period of the drives and without
-LEAST: Final = 0.01  # of the distance: the error at least
+SURE, UNSURE = 0.25, 3.0  # of all corrections: the error, with a common period of the drives and without
+LEAST: Final = 0.03  # of the distance: the error at least
 LOOSE: Final = 1e-7  # the tolerance of pieces, at least: at 1e-6 a drift may be a tenth off
 ROUNDING: Final = 1e-9  # of a time
 
@@ -68,10 +68,11 @@ class _Piece(NamedTuple):
 def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
     """Estimate the path of a case; None where the drives have few periods, or the part may fly.
 
-    A leap over n periods carries the part by n d, where d is its displacement in the period before. The displacement
-    d' in the m-th period after it then corrects this by (d' - d) n (n + 1) / 2 (n + m), as if displacements changed
-    linearly with time. A leap after which the part is lost is halved, and so is one whose correction is not small
-    where drives have a common period. The error is a share of the corrections' lengths, or of the distance.
+    A leap carries the part by the integral over its periods of the line through the last two displacements in a
+    period; the displacement found after it makes the line a parabola, which corrects the leap. Where drives have no
+    common period, it is the last displacement, and then a line. A leap after which the part is lost is halved, and so
+    is one whose correction is not small where drives have a common period. The error is a share of the corrections'
+    lengths, or of the distance.
     """
     course, run = Course.of(build_drives(case), case.run.duration), case.run
     if course.periods < MANY or run.scheme != "events" or run.after_detachment == "fly":
@@ -82,20 +83,25 @@ def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
 
     now, last = BEFORE, course.periods - AFTER
     passed = longest = (last - now) // LEAPS
+    order = 2 if course.common else 1
     piece = _piece(case, surface, law, (0.0, moment(now)), course.period)
     rows, error, followed = [piece.rows], 0.0, now
+    drifts = [] if piece.drift is None else [(now - 0.5, piece.drift)]
     while now < last and piece.drift is not None:
         passed = max(min(passed, last - now - BETWEEN), 0)
         begin, end, drift = now + passed, min(now + passed + BETWEEN, last), piece.drift
+        carried = _carried(drifts[-order:], now, begin)
         found: _Piece | None = None
         change = np.zeros(3)
         with suppress(ValueError):  # of a leap over the rim
-            found = _piece(_at(case, piece, passed * drift), surface, law, (moment(begin), moment(end)), course.period)
+            found = _piece(_at(case, piece, carried), surface, law, (moment(begin), moment(end)), course.period)
             if found.drift is not None:
-                change = (found.drift - drift) * passed * (passed + 1) / (2 * (passed + end - begin))
+                drifts.append((end - 0.5, found.drift))
+                change = _carried(drifts[-order - 1 :], now, begin) - carried
         length = float(np.hypot(*change[:2]))
         bent = course.common and length > BENT * passed * float(np.hypot(*drift[:2])) + NOTHING
         if passed and (found is None or found.drift is None or bent):
+            drifts = [one for one in drifts if one[0] < now]
             passed //= 2
             continue
         assert found is not None
@@ -114,6 +120,14 @@ def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
     path = replace(piece.path, time=whole[:, 0], position=whole[:, 1:3], velocity=whole[:, 4:], heading=heading)
     error *= SURE if course.common else UNSURE
     return Leaped(path, followed, course.periods, max(error, LEAST * path.distance))
+
+
+def _carried(drifts: Sequence[tuple[float, FloatArray]], begin: int, end: int) -> FloatArray:
+    """What a part is carried by (3,) over periods, where it drifts as the polynomial through (period, drift)."""
+    periods = np.array([period for period, _ in drifts]) - begin
+    powers = np.arange(1, len(drifts) + 1)
+    weights = np.linalg.solve(periods ** (powers[:, None] - 1), (end - begin) ** powers / powers)
+    return weights @ np.array([drift for _, drift in drifts])
 
 
 def _piece(case: Case, surface: SurfaceMotion, law: Contact, times: tuple[float, float], period: float) -> _Piece:
