@@ -50,9 +50,19 @@ values = ["10000 Hz", "10000.5 Hz", "10001 Hz"]
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
+def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
     (folder / "base.toml").write_text(CASE)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def drifts(folder):
+    return drift(read_case(folder / "base.toml"), "each", 12)
+
+
+@pytest.fixture(scope="module")
+def pages(folder, drifts):
     (folder / "many.toml").write_text(STUDY)
     study = read_study(folder / "many.toml")
     found = run_study(study)
@@ -62,7 +72,7 @@ def pages(tmp_path_factory):
         "none": write_study_page(study, found.dataset, folder / "none.html", 0),
         "repeats": repeated(folder),
         "faced": turning(folder),
-        "drift": write_drift_page(drift(read_case(folder / "base.toml"), "each", 12), folder / "drift.html"),
+        "drift": write_drift_page(drifts, folder / "drift.html"),
     }
 
 
@@ -180,7 +190,7 @@ def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refu
     assert picker.get_attribute("aria-valuetext") == "10.00050 kHz"
 
 
-def test_a_click_on_a_place_shows_where_a_part_from_there_ends_and_each_group_has_its_map(open_page):
+def test_a_click_on_a_place_shows_where_a_part_from_there_ends_and_each_group_has_its_map(open_page, drifts):
     browser = open_page("drift")
     x, y, place, end = browser.execute_script(
         "element('map').scrollIntoView(); const k = shown.moving.find((one) => one !== chosen);"
@@ -191,6 +201,10 @@ def test_a_click_on_a_place_shows_where_a_part_from_there_ends_and_each_group_ha
     ActionChains(browser).move_to_element_with_offset(chart, *cell_at(browser, x, y)).pause(0.5).click().perform()
     wait(lambda: readout(browser)["from rest at"] == place)
     assert readout(browser)["in the end"] == end
+    drawn = "return maps.map((one) => [one.moved, one.reached].map((at) => [at.x, at.y].map((c) => [...c])))"
+    for one, (moved, reached) in zip(drifts.maps, browser.execute_script(drawn), strict=True):
+        np.testing.assert_allclose(1e-6 * np.transpose(moved), one.moved, rtol=1e-6)
+        np.testing.assert_allclose(1e-6 * np.transpose(reached), one.basins.reached, rtol=1e-6)
     before = pixels(browser, "map")
     browser.find_element(By.ID, "group").send_keys(Keys.ARROW_DOWN)
     wait(lambda: browser.find_element(By.ID, "map-caption").text != text)
