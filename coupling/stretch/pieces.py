@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from coupling.stretch.interval import (
     Interval,
     Moment,
+    copy,
     enter_drives,
     enter_interval,
     enter_moment,
@@ -128,13 +129,20 @@ def find_nodes(
                 return outcome, edges[k] + (1.0 + s) * half, solved
         for j in range(n):
             largest = max(largest, abs(left[0, j]), abs(middle[0, j]), abs(right[0, j]))
-        before[:] = drives
+        _copy(drives, before)
         if k == loop:
-            at_loop[:] = drives
+            _copy(drives, at_loop)
     if loop >= 0:
         last, first = 0.5 * (edges[count] - edges[count - 1]), 0.5 * (edges[loop + 1] - edges[loop])
         _rescale(nodes[loop, 0], last / first, nodes[count - 1, 2], _shared(table, before, at_loop, last, first))
     return FINE, 0.0, solved
+
+
+@kernel_device_no_arrays
+def _copy(a: FloatArray, out: FloatArray) -> None:
+    """Numbers (m, n) into others: numba's own copies compile messages about shapes."""
+    for i in range(len(out)):
+        copy(a[i], out[i])
 
 
 @kernel_device_no_arrays
@@ -190,7 +198,9 @@ def lay_pieces(
     most, solved = 1 << MAX_HALVINGS, 0
     while k < len(edges) - 1 and laid + 2 * most <= len(walk.edges):
         half, known = 0.5 * (edges[k + 1] - edges[k]), True
-        left[:], middle[:], at = nodes[k, 0], nodes[k, 1], -1.0
+        _copy(nodes[k, 0], left)
+        _copy(nodes[k, 1], middle)
+        at = -1.0
         over = _measure(left, middle, nodes[k, 2], 2.0, limits)
         count = 1 if over <= 1.0 else int(math.ceil(min(over ** (1 / 6) * SPARE, float(most))))
         if count > 1:
@@ -199,7 +209,8 @@ def lay_pieces(
         for p in range(count):
             top, end = 0, -1.0 + 2.0 * (p + 1) / count
             if p + 1 == count:
-                stack[0], places[0] = nodes[k, 2], 1.0
+                _copy(nodes[k, 2], stack[0])
+                places[0] = 1.0
             else:
                 # A guess for Newton's method, from the nodes of the whole interval.
                 _between(nodes[k, 0], nodes[k, 2], 0.5 * (end + 1.0), stack[0])
@@ -220,11 +231,13 @@ def lay_pieces(
                     lay_piece(left, stack[top], length, walk.coefficients[laid])
                     walk.edges[laid] = edges[k] + (1.0 + at) * half
                     laid += 1
-                    left[:], at = stack[top], places[top]
+                    _copy(stack[top], left)
+                    at = places[top]
                     top -= 1
                 else:
                     top += 1
-                    stack[top], places[top] = middle, at + 0.5 * length
+                    _copy(middle, stack[top])
+                    places[top] = at + 0.5 * length
                 known = False
         k += 1
     return k, laid, -1.0, solved

@@ -119,8 +119,10 @@ def second_derivative(c: FloatArray, unit: float) -> FloatArray:
 def total(a: FloatArray, b: FloatArray) -> FloatArray:
     """The sum of two polynomials."""
     out = np.zeros(max(len(a), len(b)))
-    out[: len(a)] += a
-    out[: len(b)] += b
+    for k in range(len(a)):
+        out[k] += a[k]
+    for k in range(len(b)):
+        out[k] += b[k]
     return out
 
 

@@ -102,10 +102,12 @@ def with_room(record: PathRecord) -> PathRecord:
     rows, events, lengths = record.rows, record.events, record.lengths[0]
     if lengths.rows + ROOM > len(rows):
         rows = np.zeros(2 * len(rows), ROW)
-        rows[: len(record.rows)] = record.rows
+        for k in range(lengths.rows):
+            rows[k] = record.rows[k]
     if lengths.events + ROOM > len(events):
         events = np.zeros(2 * len(events), EVENT)
-        events[: len(record.events)] = record.events
+        for k in range(lengths.events):
+            events[k] = record.events[k]
     return PathRecord(rows, events, record.lengths)
 
 
