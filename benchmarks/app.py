@@ -155,7 +155,7 @@ def main():
         options.add_argument(f"--{flag}")
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
     driver.set_script_timeout(10 * seconds)
-    print("device      what                     paths/s  median [ms]  95 % [ms]  largest [ms]")
+    print("device        what                     paths/s  median [ms]  95 % [ms]  largest [ms]")
     try:
         with tempfile.TemporaryDirectory() as folder:
             device = Path(folder, "device.toml")
@@ -166,7 +166,7 @@ def main():
                 for what, delays in measure(driver, path, seconds, *fields).items():
                     median, most = np.percentile(delays, [50, 95])
                     rate = len(delays) / seconds
-                    print(f"{name:12}{what:21}  {rate:10.1f}  {median:11.0f}  {most:9.0f}  {max(delays):12.0f}")
+                    print(f"{name:14}{what:21}  {rate:10.1f}  {median:11.0f}  {most:9.0f}  {max(delays):12.0f}")
             estimate_errors(device)
     finally:
         driver.quit()

@@ -27,7 +27,7 @@ CONTENTS = {  # the pages below a page, by caption
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
         "Theory": ["plate", "surface", "motion", "contact", "large-deflection", "inertia", "face", "air"],
-        "Trust": ["limits", "accuracy", "paper", "trust"],
+        "Trust": ["limits", "accuracy", "benchmarks", "paper", "trust"],
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture"],
     },
