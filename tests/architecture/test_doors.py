@@ -10,6 +10,7 @@ MODULES = {".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix("
 SCRIPTS = sorted(file for folder in ("benchmarks", "docs", "examples") for file in (ROOT / folder).rglob("*.py"))
 INSIDE = {  # scripts that measure or describe parts of rooms, which are not public
     "benchmarks/aims.py",
+    "benchmarks/app.py",
     "benchmarks/assembly.py",
     "benchmarks/contact.py",
     "benchmarks/measured_motion.py",
