@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from common import SIZE, Drawing, draw, figure_of, label_axis, label_places
@@ -67,8 +68,16 @@ def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
     across = axes.get_xaxis_transform()  # times along x, from the bottom to the top of the axes along y
     for state in SHADES:
         spans = rows.time[np.array(stretches(rows.state == state), dtype=np.int64).reshape(-1, 2)] * per_second
-        bars = [[(begin, 0), (begin, 1), (end, 1), (end, 0)] for begin, end in spans.tolist()]
-        axes.add_collection(PolyCollection(bars, transform=across, zorder=0, **_look(state)), autolim=False)
+        if not len(spans):
+            continue
+        bars = np.zeros((len(spans), 4, 2))
+        bars[:, :, 0], bars[:, 1:3, 1] = spans[:, [0, 0, 1, 1]], 1.0
+        shades = PolyCollection(list(bars), transform=across, zorder=0, **_look(state))
+        if state is not State.STICK:  # one path, as each with a hatch takes a millisecond
+            whole: Any = Path.make_compound_path_from_polys(bars)
+            shades.set_verts_and_codes([whole.vertices], [whole.codes])
+            shades.set_snap(True)  # to whole pixels, as paths with few corners are anyway
+        axes.add_collection(shades, autolim=False)
 
 
 def shade_keys(rows: Rows) -> list[Artist]:

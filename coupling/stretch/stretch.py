@@ -105,23 +105,22 @@ class StretchField:
 
     def __init__(self, stretch: Stretch, xy: FloatArray) -> None:
         shapes, self._plate = stretch.shapes, stretch.model.large.plate
-        self._value, self._gradient, self._hessian = shapes.evaluate(xy)
+        self._value, gradient, hessian = shapes.evaluate(xy)
+        self._gradient, self._hessian = (np.ascontiguousarray(np.moveaxis(rows, 1, -1)) for rows in (gradient, hessian))
         self._in_plane = shapes.in_plane_gradients(xy)
 
-    def strain(self, b: FloatArray, g: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The strain of the mid-plane, and what bending adds at the top face, (n, 2, 2) each."""
-        slope = self._gradient.transpose(0, 2, 1) @ b
+    def strain(self, slope: FloatArray, b: FloatArray, g: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The strain of the mid-plane under slopes (n, 2), and what bending adds at the top face, (n, 2, 2) each."""
         stretched = self._in_plane @ g
         middle = (stretched + stretched.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
-        curvature = np.tensordot(self._hessian, b, (1, 0))
-        return middle, -self._plate.section.thickness / 2 * curvature
+        return middle, -self._plate.section.thickness / 2 * (self._hessian @ b)
 
     def extremes(self, b: FloatArray, g: FloatArray) -> Extremes:
         """The largest deflection, slope and strain of the points."""
-        middle, bending = self.strain(b, g)
-        slope = np.linalg.norm(self._gradient.transpose(0, 2, 1) @ b, axis=1)
+        slope = self._gradient @ b
+        middle, bending = self.strain(slope, b, g)
         strain = max(_largest_principal(middle + sign * bending) for sign in (-1, 1))
-        return Extremes(float(np.abs(self._value @ b).max()), float(slope.max()), strain)
+        return Extremes(float(np.abs(self._value @ b).max()), float(np.linalg.norm(slope, axis=1).max()), strain)
 
 
 def _largest_principal(tensors: FloatArray) -> float:
