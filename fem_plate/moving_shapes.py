@@ -112,13 +112,13 @@ class StretchedShapes(MovingShapes):
     def in_plane_values(self, xy: FloatArray) -> FloatArray:
         """The in-plane motions (n, M, 2) at points (n, 2) [m]."""
         plane_stress = self._reduction.discrete.plane_stress
-        motions = plane_stress.evaluate(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)[0]
+        motions = plane_stress.values(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)
         return np.ascontiguousarray(motions.transpose(0, 2, 1))
 
     def in_plane_gradients(self, xy: FloatArray) -> FloatArray:
         """The gradients (n, 2, 2, M) [1/m] of in-plane motions at points (n, 2) [m]: component, direction, motion."""
         plane_stress = self._reduction.discrete.plane_stress
-        return plane_stress.evaluate(np.asarray(xy) / self.size, self._reduction.motions)[1] / self.size
+        return plane_stress.gradients(np.asarray(xy) / self.size, self._reduction.motions) / self.size
 
     def in_plane_heights(self) -> FloatArray:
         """What the errors of in-plane motions are relative to, (M,)."""

@@ -7,11 +7,12 @@ It bounds the membrane energy from above.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP4, ElementVector, MeshTri2
+from skfem.element import DiscreteField
 from skfem.helpers import ddot, sym_grad
 
 from fem_plate.elements import PlateSpace, factorised
@@ -63,21 +64,28 @@ class PlaneStress:
         everything[self._free] = u
         return everything
 
-    def evaluate(self, x: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Motions (n, 2, c) and their gradients (n, 2, 2, c), the last but one the direction, at points x (n, 2).
+    def values(self, x: FloatArray, u: FloatArray) -> FloatArray:
+        """Motions (n, 2, c) at points x (n, 2); u: (unknowns, c)."""
+        value = np.zeros((len(x), 2, u.shape[1]))
+        for along, function, weight in self._shares(x, u):
+            value[:, along] += np.asarray(function)[along] * weight
+        return value
 
-        u: (unknowns, c).
-        """
+    def gradients(self, x: FloatArray, u: FloatArray) -> FloatArray:
+        """Their gradients (n, 2, 2, c), the last but one the direction, likewise."""
+        gradient = np.zeros((len(x), 2, 2, u.shape[1]))
+        for along, function, weight in self._shares(x, u):
+            gradient[:, along] += function.grad[along].transpose(1, 0, 2) * weight[:, None]
+        return gradient
+
+    def _shares(self, x: FloatArray, u: FloatArray) -> Iterator[tuple[int, DiscreteField, FloatArray]]:
+        """Each basis function at points x (n, 2): the one direction along which it moves, itself, weights (n, c)."""
         basis, everything = self.basis, self._expand(u)
         triangle = self.space.triangle_of(x)
         local = self._local(x, triangle)
-        value, gradient = np.zeros((len(x), 2, u.shape[1])), np.zeros((len(x), 2, 2, u.shape[1]))
         for i in range(basis.Nbfun):
             (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
-            weight = everything[basis.element_dofs[i, triangle]]
-            value += np.asarray(function)[..., 0].T[:, :, None] * weight[:, None]
-            gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
-        return value, gradient
+            yield i % 2, function, everything[basis.element_dofs[i, triangle]]
 
     def _local(self, x: FloatArray, triangle: IntArray) -> FloatArray:
         """The reference coordinates (2, n, 1) of points (n, 2) on triangles (n,), curved ones by Newton's method."""

@@ -84,7 +84,7 @@ class DeflectedPlate(Estimated):
     def in_plane(self, xy: ArrayLike) -> FloatArray:
         """The in-plane motion u (n, 2) [m] of the mid-plane at points (n, 2) [m]; raises as `evaluate` does."""
         x = self._dimensionless(xy)
-        return self.discrete.plane_stress.evaluate(x, self._motion[:, None])[0][..., 0] * self.discrete.motion_unit
+        return self.discrete.plane_stress.values(x, self._motion[:, None])[..., 0] * self.discrete.motion_unit
 
     def membrane_force(self, xy: ArrayLike) -> FloatArray:
         """The membrane force (n, 2, 2) [N/m], positive: pulls, at points (n, 2) [m]; raises as `evaluate` does."""
@@ -94,7 +94,7 @@ class DeflectedPlate(Estimated):
             hessian = discrete.model.space.evaluate(x, membrane[:, None], orders=3)[2][:, 0]
             force = np.trace(hessian, axis1=1, axis2=2)[:, None, None] * np.eye(2) - hessian
         else:
-            strain = discrete.plane_stress.evaluate(x, membrane[:, None])[1][..., 0]
+            strain = discrete.plane_stress.gradients(x, membrane[:, None])[..., 0]
             slope = self.functions.evaluate(x)[1][:, 0] / discrete.thickness
             strain = (strain + strain.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
             xx, xy_, yy = discrete.membrane.law @ np.stack([strain[:, 0, 0], 2 * strain[:, 0, 1], strain[:, 1, 1]])
