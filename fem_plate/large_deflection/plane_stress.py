@@ -67,25 +67,25 @@ class PlaneStress:
     def values(self, x: FloatArray, u: FloatArray) -> FloatArray:
         """Motions (n, 2, c) at points x (n, 2); u: (unknowns, c)."""
         value = np.zeros((len(x), 2, u.shape[1]))
-        for function, weight in self._functions(x, u):
-            value += np.asarray(function)[..., 0].T[:, :, None] * weight[:, None]
+        for along, function, weight in self._shares(x, u):
+            value[:, along] += np.asarray(function)[along] * weight
         return value
 
     def gradients(self, x: FloatArray, u: FloatArray) -> FloatArray:
-        """The gradients (n, 2, 2, c) of motions, the last but one the direction, likewise."""
+        """Their gradients (n, 2, 2, c), the last but one the direction, likewise."""
         gradient = np.zeros((len(x), 2, 2, u.shape[1]))
-        for function, weight in self._functions(x, u):
-            gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
+        for along, function, weight in self._shares(x, u):
+            gradient[:, along] += function.grad[along].transpose(1, 0, 2) * weight[:, None]
         return gradient
 
-    def _functions(self, x: FloatArray, u: FloatArray) -> Iterator[tuple[DiscreteField, FloatArray]]:
-        """Each function of the triangles at points x (n, 2), and its unknowns there (n, c)."""
+    def _shares(self, x: FloatArray, u: FloatArray) -> Iterator[tuple[int, DiscreteField, FloatArray]]:
+        """Each basis function at points x (n, 2): the one direction along which it moves, itself, weights (n, c)."""
         basis, everything = self.basis, self._expand(u)
         triangle = self.space.triangle_of(x)
         local = self._local(x, triangle)
         for i in range(basis.Nbfun):
             (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
-            yield function, everything[basis.element_dofs[i, triangle]]
+            yield i % 2, function, everything[basis.element_dofs[i, triangle]]
 
     def _local(self, x: FloatArray, triangle: IntArray) -> FloatArray:
         """The reference coordinates (2, n, 1) of points (n, 2) on triangles (n,), curved ones by Newton's method."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from particle.drives.pieces import ORDER, ROUNDING, DriveTable, drive_piece, find_alike
 from particle.jit import jit
@@ -113,7 +113,7 @@ class Evaluated:
     def evaluate(self: AnyDrive, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """h [m], its velocity [m/s] and its acceleration [m/s^2] at times of any shape [s]."""
         time = np.asarray(time, dtype=float)
-        values = _values(drive_table([self]), np.ascontiguousarray(time.ravel()))
+        values = _values(_pieces_of([self]), np.ascontiguousarray(time.ravel()))
         return values[0].reshape(time.shape), values[1].reshape(time.shape), values[2].reshape(time.shape)
 
 
@@ -128,11 +128,21 @@ def accelerations(table: DriveTable, time: float) -> FloatArray:
 
 def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
     """The drives as kernels read them."""
+    table = _pieces_of(drives)
+    find_alike(table)
+    jump = _jumps(table)
+    longest = JUMP_OVER * np.where(np.isfinite(table.stroke_time), table.stroke_time, 0.0)
+    rough = jump[:, 2] + FOURTH * longest * jump[:, 3] + FIFTH * longest**2 * jump[:, 4]
+    return table._replace(jump=jump[:, :2].copy(), rough=rough)
+
+
+def _pieces_of(drives: Sequence[AnyDrive]) -> DriveTable:
+    """The same without what their jumps and likeness say of a span."""
     parts = [Segments(*drive.segments()) for drive in drives]
     none = np.zeros((len(drives), 2))
     first = np.cumsum([0] + [len(part.start) for part in parts])
     beside = np.array([(part.lead, -part.tail) for part in parts], dtype=np.int64).reshape(-1, 2)
-    table = DriveTable(
+    return DriveTable(
         first=first,
         loop=np.stack([first[:-1], first[1:]], axis=1) + beside,
         start=np.concatenate([np.zeros(0)] + [part.start for part in parts]),
@@ -146,11 +156,6 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
         rough=none[:, 0],
         alike=np.zeros(len(drives), dtype=np.bool_),
     )
-    find_alike(table)
-    jump = _jumps(table)
-    longest = JUMP_OVER * np.where(np.isfinite(table.stroke_time), table.stroke_time, 0.0)
-    rough = jump[:, 2] + FOURTH * longest * jump[:, 3] + FIFTH * longest**2 * jump[:, 4]
-    return table._replace(jump=jump[:, :2].copy(), rough=rough)
 
 
 def horizon(table: DriveTable, time: float) -> float | None:
@@ -218,12 +223,22 @@ def _jumps(table: DriveTable) -> FloatArray:
     if len(table.span) == 0:
         return np.zeros((0, ORDER - 1))
     orders = np.arange(1, ORDER)
-    per_order = table.scale[:, None] ** orders
+    per_order = _powers(table, orders)
     begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
     # At rest before the start, and after the end if there is one; before that the end of a pass goes on into the next.
     jump, most, shortest = _largest_jumps(table, begins, ends)
     rounding = 100 * ROUNDING * most[:, None] / shortest[:, None] ** orders
     return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
+
+
+def _powers(table: DriveTable, orders: NDArray[np.int64]) -> FloatArray:
+    """Powers of the segments' scales (S, k), found once for drives that are alike."""
+    first, drives = table.first[:-1], np.arange(len(table.alike))
+    model = np.maximum.accumulate(np.where(table.alike, 0, drives))  # the first of those that are alike
+    segments = np.diff(table.first)
+    own = np.repeat(~table.alike, segments)
+    like = np.arange(len(own)) - np.repeat(first - first[model], segments)
+    return np.asarray((table.scale[own, None] ** orders)[(np.cumsum(own) - 1)[like]])
 
 
 @jit

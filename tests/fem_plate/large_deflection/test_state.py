@@ -72,6 +72,24 @@ def test_both_membranes_move_alike():
     assert states[0].reactions == pytest.approx(states[1].reactions, rel=2e-5)
 
 
+def test_motions_in_the_plane_are_the_sum_of_both_components_of_all_functions():
+    plane = (
+        Plate(disc(1.0, 0.4), UNIT).large_deflection(TWO).solved(np.array([1.0, -0.6]), 0.0, 0, 0).discrete.plane_stress
+    )
+    rng = np.random.default_rng(0)
+    x, u = rng.uniform(-0.6, 0.6, (20, 2)), rng.normal(size=(len(plane.membrane.reduce(np.zeros(plane.basis.N))), 3))
+    value, gradient = np.zeros((20, 2, 3)), np.zeros((20, 2, 2, 3))
+    triangle, everything = plane.space.triangle_of(x), plane.membrane.expand(u)
+    local = plane._local(x, triangle)
+    for i in range(plane.basis.Nbfun):
+        (function,) = plane.basis.elem.gbasis(plane.basis.mapping, local, i, triangle)
+        weight = everything[plane.basis.element_dofs[i, triangle]]
+        value += np.einsum("an,nc->nac", np.asarray(function)[..., 0], weight)
+        gradient += np.einsum("abn,nc->nabc", function.grad[..., 0], weight)
+    assert np.array_equal(plane.values(x, u), value)
+    assert np.array_equal(plane.gradients(x, u), gradient)
+
+
 @pytest.mark.slow
 def test_energy_bracket_closes():
     """The Airy function's stretching energy of one and the same w is the lower, in-plane motion's the upper bound."""
