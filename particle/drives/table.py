@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.drives.pieces import ORDER, ROUNDING, DriveTable, drive_piece, find_alike
 from particle.jit import jit
@@ -223,22 +223,12 @@ def _jumps(table: DriveTable) -> FloatArray:
     if len(table.span) == 0:
         return np.zeros((0, ORDER - 1))
     orders = np.arange(1, ORDER)
-    per_order = _powers(table, orders)
+    per_order = table.scale[:, None] ** orders
     begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
     # At rest before the start, and after the end if there is one; before that the end of a pass goes on into the next.
     jump, most, shortest = _largest_jumps(table, begins, ends)
     rounding = 100 * ROUNDING * most[:, None] / shortest[:, None] ** orders
     return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
-
-
-def _powers(table: DriveTable, orders: NDArray[np.int64]) -> FloatArray:
-    """Powers of the segments' scales (S, k), found once for drives that are alike."""
-    first, drives = table.first[:-1], np.arange(len(table.alike))
-    model = np.maximum.accumulate(np.where(table.alike, 0, drives))  # the first of those that are alike
-    segments = np.diff(table.first)
-    own = np.repeat(~table.alike, segments)
-    like = np.arange(len(own)) - np.repeat(first - first[model], segments)
-    return np.asarray((table.scale[own, None] ** orders)[(np.cumsum(own) - 1)[like]])
 
 
 @jit

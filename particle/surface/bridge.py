@@ -25,8 +25,6 @@ WORTHWHILE = 0.9  # of the spans: bridges must leave fewer
 def allow_bridges(local: LocalSurface, velocity_error: float, acceleration_error: float) -> None:
     """How far [m/s, m/s^2] the surface's motion may be off over bridges, from the next span on; 0: there are none."""
     frame: Frame = local.frame[0]
-    if velocity_error != frame.velocity_error or acceleration_error != frame.acceleration_error:
-        frame.max_bridge = 0.0
     frame.velocity_error, frame.acceleration_error = velocity_error, acceleration_error
 
 

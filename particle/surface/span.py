@@ -55,7 +55,6 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     frame.x, frame.y = entered.x, entered.y
     frame.half_x, frame.half_y = entered.half_x, entered.half_y
     frame.clear, frame.time, frame.unit = entered.clear, time, surface.unit
-    known = cell == frame.cell  # with the jumps of its drives, and which of them are best bridged
     frame.cell, frame.begun, frame.moment = cell, time, math.nan
     frame.degree, frame.monomials = entered.degree, monomial_count(entered.degree)
     frame.drives = entered.drives + frame.in_plane + frame.base_drives
@@ -73,10 +72,8 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
                 local.plane[k, m] = 0.0
     for i in range(frame.drives):
         _find_piece(surface, local, i)
-        if not known:
-            find_jump(surface, local, i)
-    if not known:
-        frame.max_bridge = 0.0
+        find_jump(surface, local, i)
+    frame.max_bridge = 0.0
     find_end(surface, local, end)
     for i in range(frame.drives):
         bridge(surface, local, i)

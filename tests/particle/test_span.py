@@ -128,20 +128,3 @@ def test_only_what_hardly_counts_is_bridged():
         enter(record, local, 0.0, 0.0, time, 0.05)
         assert local.frame[0].end == min(next_breakpoint(record.drives, time), 0.05)
         time = local.frame[0].end
-
-
-def test_what_is_bridged_in_a_cell_is_chosen_once_for_the_same_errors():
-    """Also where a span begins anew, as at an earlier time; for other errors it is chosen anew."""
-    surface = spread(40)
-    x, y = 0.31 * RADIUS, 0.2 * RADIUS
-    surface.evaluate([[x, y]], 0.0)
-    record = surface.record
-    kept = new_local(record)
-    for time, share in ((5e-3, 1.0), (2e-3, 1.0), (1e-3, 100.0), (0.5e-3, 0.0), (0.2e-3, 1.0)):
-        anew = new_local(record)
-        for local in (kept, anew):
-            allow_bridges(local, share * 1e-4 * STROKE * 1e3, share * 1e-3 * STROKE * 1e6)
-            enter(record, local, x, y, time, 0.05)
-        for name in ("end", "min_jump", "max_bridge"):
-            assert kept.frame[0][name] == anew.frame[0][name]
-        assert np.array_equal(kept.smooth, anew.smooth)
