@@ -74,6 +74,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/inertia.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
+	$(BIN)/python benchmarks/starting.py
 
 # Abuse: mutated and generated inputs, random paths, killed commands. docs/trust.md and docs/accuracy.md have what they show.
 SECONDS ?= 600
