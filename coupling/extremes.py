@@ -84,7 +84,7 @@ def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
 
 
 def _unlike(heights: FloatArray) -> NDArray[np.int64]:
-    """The rows of heights (k, N) [m] that no earlier one equals, but for rounding: cycles repeat themselves."""
+    """The first of all rows of heights (k, N) [m] that are equal to rounding: cycles repeat themselves."""
     unit = ALIKE * np.abs(heights).max()
     return np.sort(np.unique(np.round(heights / (unit or 1.0)), axis=0, return_index=True)[1])
 

@@ -113,8 +113,8 @@ def _held_system(
 def sums_on(model: PlateModel, coarse: InfluenceShapes, values: FloatArray, weights: FloatArray) -> FloatArray:
     """What sums of shapes with weights (N, k) change by on a finer mesh, (n, k) at its points.
 
-    The coarse forces, taken over, leave the actuators off their heights by little; the coarse shapes bring them back,
-    but for the product of two errors. So there is one solution for each sum, and not one for each shape.
+    The coarse forces, taken over, leave the actuators slightly off their heights. The coarse shapes bring them back, to
+    the product of two errors. So each sum takes one solution, where each shape would take one.
 
     values: (n, N), of the coarse shapes at these points.
     """
@@ -200,7 +200,7 @@ class InfluenceShapes(Shapes, Estimated):
         Of many actuators it is the root of the sum of squares of all shapes' differences at the worst place, found from
         random sums of them: as large as that of the worst shape, or somewhat larger.
         """
-        if len(self.points) <= 2 * SUMS or self.rounding:  # that of actuators which all but coincide
+        if len(self.points) <= 2 * SUMS or self.rounding:  # actuators nearly coincide: sums of forces would cancel
             return super().error_estimate
         model = self.finer()
         shapes = self.values(model.space.points * model.mesh.size)

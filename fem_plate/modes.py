@@ -28,7 +28,6 @@ from fem_plate.types import BoolArray, FloatArray
 CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
 RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved to, out of the way
 MAX_MODES = 400  # so many responses are enough
-RESIDUAL = 1e-10  # of the largest of 1/omega^2: squared frequencies are as exact as its square, modes as itself
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
@@ -105,7 +104,7 @@ class HeldPlate:
         inside = model.infinite.acts(x)
         on_rim, both = ~inside, np.ix_(inside, inside)
         yielding = (green + green.T)[both] / 2 + compliance[both]  # G + 1/k
-        # The plate raised by 1 at each held point inside, of all the others at rest: phi, its part without F.
+        # phi: the plate raised by 1 at one held point inside and by 0 at the others; `_raised` is its part without F.
         self._forces = np.zeros((len(x), int(inside.sum())))
         self._forces[inside] = np.linalg.inv(yielding)
         self._raised = responses @ self._forces
@@ -182,7 +181,7 @@ def modes(held_plate: HeldPlate, count: int, inertia: float, refine: Callable[[]
         sigma=0,
         OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
         v0=np.ones(unknowns),  # eigsh would start from a random vector, and differ from run to run
-        tol=RESIDUAL,
+        tol=0,  # rounding: a looser one may miss one of two equal frequencies
     )
     order = np.argsort(squares)
     functions, _ = held_plate.functions(vectors[:, order])

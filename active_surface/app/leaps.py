@@ -69,10 +69,10 @@ def leaped(case: Case, surface: SurfaceMotion, law: Contact) -> Leaped | None:
     """Estimate the path of a case; None where the drives have few periods, or the part may fly.
 
     A leap carries the part by the integral over its periods of the line through the last two displacements in a
-    period; the displacement found after it makes the line a parabola, which corrects the leap. Where drives have no
-    common period, it is the last displacement, and then a line. A leap after which the part is lost is halved, and so
-    is one whose correction is not small where drives have a common period. The error is a share of the corrections'
-    lengths, or of the distance.
+    period, the first by its only one; the displacement found after it makes the line a parabola, which corrects the
+    leap. Without a common period the last displacement carries the part, and a line corrects it. A leap after which
+    the part is lost is halved, and so is one whose correction is not small where drives have a common period. The error
+    is a share of the corrections' lengths, or of the distance.
     """
     course, run = Course.of(build_drives(case), case.run.duration), case.run
     if course.periods < MANY or run.scheme != "events" or run.after_detachment == "fly":

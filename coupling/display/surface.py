@@ -24,7 +24,7 @@ IntArray = NDArray[np.int64]
 
 MARGIN = 0.2  # of the path's extent: how far the square of a platform reaches beyond the path
 AS_MUCH = 0.999  # of the largest deflection: the first step with this much counts as the most deflected
-DISTINCT = 100  # actuators to each different drive: with more of these sums of shapes fill more memory than shapes
+DISTINCT = 100  # actuators to each different drive, at least: with fewer, sums take more memory than shapes
 TRUNCATED_HEIGHT = 1e-7  # of a stroke: smaller entries of patched shapes are left out of deflections
 TRUNCATED_CURVATURE = 1e-5  # of the curvature at an actuator: likewise of curvatures
 

@@ -137,7 +137,7 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
 
 
 def _pieces_of(drives: Sequence[AnyDrive]) -> DriveTable:
-    """The same without what their jumps and likeness say of a span."""
+    """The same, with jumps, roughness and likeness left at 0."""
     parts = [Segments(*drive.segments()) for drive in drives]
     none = np.zeros((len(drives), 2))
     first = np.cumsum([0] + [len(part.start) for part in parts])
