@@ -54,7 +54,8 @@ def main() -> None:
         turns = [(cost(folder, "-c", IMPORTS)[0], run(kernels, folder)[0]) for _ in range(TURNS)]
     ratios = sorted(later / imports for imports, later in turns)
     lines = ["| run of the main job | processor time over imports |", "|---|---:|"]
-    lines.append(f"| first: kernels compiled, the plate's model made | {first / median(imports for imports, _ in turns):.0f} |")
+    ratio = first / median(imports for imports, _ in turns)
+    lines.append(f"| first: kernels compiled, the plate's model made | {ratio:.0f} |")
     lines.append(f"| later | {median(ratios):.1f} ({ratios[0]:.1f} - {ratios[-1]:.1f}) |")
     print("\n".join(lines))
     report.write("starting", lines)
