@@ -73,8 +73,8 @@ def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
             np.maximum.at(row, pairs[:, side], mean)
     largest, highest = 0.0, float(np.abs(lifted).max())
     for measure in (slope, np.abs(lifted)):
-        latest = np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]
-        for moment in latest[_unlike(heights[latest])]:
+        most = np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]
+        for moment in most[_unlike(lifted[most])]:
             centres = np.argsort(-measure[moment], kind="stable")[:ACTUATORS]
             xy = _circles(shapes, centres, nearest[centres])
             value, gradient, _ = shapes.evaluate(xy, heights[moment])

@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from active_surface.identification.estimate import Estimate, TrackFit
 from active_surface.identification.parameters import FREE, case_with, check, parameters_of
@@ -18,7 +17,7 @@ from active_surface.identification.result import Identified, case_names, names_o
 from active_surface.identification.search import search
 from active_surface.identification.track import Track
 from active_surface.identification.trials import Loss, Recording, Trials
-from coupling import Progress, build_friction, build_surface, follow_part, silent
+from coupling import Progress, build_friction, build_surface, follow_part, one_blas_thread, silent
 from coupling.case import Case, plain_case
 from particle import SurfaceMotion, interruptible
 
@@ -83,7 +82,7 @@ def identify(
     names = names_of([one.name for one in cases], len(tracks))
     written = case_names(cases, len(tracks), bool(alone))
     # Many small systems: BLAS threads would only wait for each other.
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         with progress("Solving the plate"):
             surfaces = _surfaces(cases)
         each = len(tracks) // len(cases)  # 1, or all

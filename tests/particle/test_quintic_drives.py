@@ -104,13 +104,3 @@ def test_a_surface_under_them_is_the_sum_of_its_shapes():
             assert [f.w, f.w_t, f.w_tt] == pytest.approx(total, rel=1e-9, abs=1e-9)
         time, spans = end, spans + 1
     assert spans > 15
-
-
-def test_jumps_beside_drives_that_are_alike_are_those_of_each_alone():
-    mixed = [Drive(1.0, 3.0), *quintic_drives(EDGES, coefficients(3), 1, 0.5, 1.0, np.zeros(3)), Drive(2.0, 5.0)]
-    table = drive_table(mixed)
-    assert table.alike.tolist() == [False, False, True, True, False]
-    for i, drive in enumerate(mixed):
-        alone = drive_table([drive])
-        assert np.array_equal(table.jump[i], alone.jump[0])
-        assert table.rough[i] == alone.rough[0]

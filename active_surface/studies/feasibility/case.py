@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import (
@@ -34,7 +33,7 @@ from active_surface.studies.feasibility.places import Place
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.response import range_fault
 from common import quantity_text
-from coupling import Progress, borders, build_drives, build_part, check_case, silent
+from coupling import Progress, borders, build_drives, build_part, check_case, one_blas_thread, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
@@ -126,7 +125,7 @@ def feasibility(
         )
     if not 10 <= across <= 1000:
         raise ValueError(f"Input across of feasibility must be in [10, 1000]; got {across}")
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         factors, strokes = np.geomspace(low, high, COUNT) / frequency, (least / stroke, most / stroke)
         shortest = min(drive.stroke_time for drive in drives)
         running = [always_running(drive) for drive in drives] if case.run.start == "steady" else drives
