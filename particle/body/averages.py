@@ -8,12 +8,13 @@ linear in P, so their derivatives by x, y, theta and t are the same averages of 
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from particle.body.face import Face
-from particle.jit import device_no_arrays, spliced
+from particle.jit import device_no_arrays, inlined, spliced
+from particle.lanes import LANES, load, store
 from particle.surface import (
     UNBUILT,
     Jet,
@@ -50,6 +51,21 @@ def prepare_locals(surface: Surface, locals_: LocalSurface) -> None:
         prepare(surface, LocalSurface(locals_.frame[k : k + 1], *(array[k] for array in locals_[1:])))
 
 
+class Under(NamedTuple):
+    """How the points of a face share cells: in groups of as many as there are lanes."""
+
+    slots: IntArray  # (n,) which local surface each point has
+    groups: IntArray  # (n + 1,) which each group has; -1 after the last
+    places: FloatArray  # (5, LANES n) of groups: rho [m], and weights of P_0, a_1 and a_2, 0 in lanes to spare
+    sums: FloatArray  # (15, 9, LANES) averages, not yet added up
+
+
+def new_under(count: int) -> Under:
+    """Scratch memory for so many points."""
+    slots, groups = np.zeros(count, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
+    return Under(slots, groups, np.zeros((5, LANES * count)), np.zeros((ROWS, PLACE, LANES)))
+
+
 @device_no_arrays
 def local_of(locals_: LocalSurface, k: int) -> LocalSurface:
     """The k-th of them."""
@@ -71,7 +87,7 @@ def local_of(locals_: LocalSurface, k: int) -> LocalSurface:
 def enter_all(
     surface: Surface,
     locals_: LocalSurface,
-    slots: IntArray,
+    under: Under,
     face: Face,
     x: float,
     y: float,
@@ -80,12 +96,9 @@ def enter_all(
     end: float,
     bridged: tuple[float, float],
 ) -> tuple[int, float]:
-    """Prepare for a face at (x, y) [m] from `time` [s] on: a cell, NOWHERE or UNBUILT; when [s] the first span ends.
-
-    slots: (n,) which local surface each point of the face has from then on.
-    """
+    """Prepare for a face at (x, y) [m] from `time` [s] on: a cell, NOWHERE or UNBUILT; when [s] the first span ends."""
     cosine, sine = math.cos(heading), math.sin(heading)
-    until = end
+    until, slots = end, under.slots
     for k in range(len(face.places)):
         p, q = face.places[k, 0], face.places[k, 1]
         p, q = x + cosine * p - sine * q, y + sine * p + cosine * q
@@ -103,77 +116,106 @@ def enter_all(
             if cell < 0:
                 return cell, until
             until = min(until, local.frame[0].end)
+    _group(face, under)
     return 0, until
 
 
+@inlined
+def _group(face: Face, under: Under) -> None:
+    """Sort the face's points into groups by their slots."""
+    slots, out, count, lane = under.slots, under.places, 0, 0
+    for slot in range(len(slots)):
+        if slots[slot] != slot:
+            continue
+        lane = LANES
+        for k in range(slot, len(slots)):
+            if slots[k] != slot:
+                continue
+            if lane == LANES:
+                under.groups[count], count, lane = slot, count + 1, 0
+                for spare in range(LANES * (count - 1), LANES * count):
+                    out[0, spare], out[1, spare] = face.places[k, 0], face.places[k, 1]
+                    out[2, spare] = out[3, spare] = out[4, spare] = 0.0
+            at, lane = LANES * (count - 1) + lane, lane + 1
+            p, q, weight = face.places[k, 0], face.places[k, 1], face.weights[k]
+            out[0, at], out[1, at], out[2, at] = p, q, weight
+            for i in range(2):
+                out[3 + i, at] = weight * (face.unmoments[i, 0] * p + face.unmoments[i, 1] * q)
+    under.groups[count] = -1
+
+
 @device_no_arrays
-def within_cells(locals_: LocalSurface, slots: IntArray, face: Face, x: float, y: float, heading: float) -> bool:
+def within_cells(locals_: LocalSurface, under: Under, face: Face, x: float, y: float, heading: float) -> bool:
     """Whether all points of a face at (x, y) [m] lie where their cells' polynomials hold."""
     cosine, sine = math.cos(heading), math.sin(heading)
     for k in range(len(face.places)):
         p, q = face.places[k, 0], face.places[k, 1]
-        if not within_frame(locals_.frame[slots[k]], x + cosine * p - sine * q, y + sine * p + cosine * q):
+        if not within_frame(locals_.frame[under.slots[k]], x + cosine * p - sine * q, y + sine * p + cosine * q):
             return False
     return True
 
 
 @device_no_arrays
 def fill_averages(
-    locals_: LocalSurface, slots: IntArray, face: Face, x: float, y: float, heading: float, time: float, out: FloatArray
+    locals_: LocalSurface, under: Under, x: float, y: float, heading: float, time: float, out: FloatArray
 ) -> None:
     """P_0, a_1 and a_2 and their derivatives, (15, 9), of a face at (x, y) [m]."""
     cosine, sine = math.cos(heading), math.sin(heading)
+    sums, places = under.sums, under.places
     for i in range(ROWS):
         for j in range(PLACE):
             out[i, j] = 0.0
+            for lane in range(LANES):
+                sums[i, j, lane] = 0.0
     # Of (X + R rho, 0).
     out[AT, 0], out[AT, 1], out[AT, 3], out[AT, 4], out[AT, 6], out[AT, 7] = x, y, cosine, sine, -sine, cosine
     out[X, 0] = out[Y, 1] = 1.0
     out[BY, 3], out[BY, 4], out[BY, 6], out[BY, 7] = -sine, cosine, -cosine, -sine
     out[BY_BY, 3], out[BY_BY, 4], out[BY_BY, 6], out[BY_BY, 7] = -cosine, -sine, sine, -cosine
     stretches = locals_.frame[0].in_plane > 0
-    for k in range(len(face.places)):
-        if slots[k] == k:
-            set_time(local_of(locals_, k), time)
-    local, last = local_of(locals_, 0), 0
-    for k in range(len(face.places)):
-        if slots[k] != last:
-            local, last = local_of(locals_, slots[k]), slots[k]
-        rho_1, rho_2 = face.places[k, 0], face.places[k, 1]
+    for group in range(len(under.groups)):
+        slot = under.groups[group]
+        if slot < 0:
+            break
+        local, first = local_of(locals_, slot), LANES * group
+        set_time(local, time)
+        rho_1, rho_2 = load(places[0], first), load(places[1], first)
+        w, w_1, w_2 = load(places[2], first), load(places[3], first), load(places[4], first)
         r_x, r_y = cosine * rho_1 - sine * rho_2, sine * rho_1 + cosine * rho_2
-        weight = face.weights[k]
-        w_1 = weight * (face.unmoments[0, 0] * rho_1 + face.unmoments[0, 1] * rho_2)
-        w_2 = weight * (face.unmoments[1, 0] * rho_1 + face.unmoments[1, 1] * rho_2)
-        _add(out, 2, weight, w_1, w_2, r_x, r_y, height_here(local, x + r_x, y + r_y))
+        _add(sums, 2, w, w_1, w_2, r_x, r_y, height_here(local, x + r_x, y + r_y))
         if stretches:
             for along in range(2):
-                _add(out, along, weight, w_1, w_2, r_x, r_y, plane_jet(local, along, x + r_x, y + r_y))
+                _add(sums, along, w, w_1, w_2, r_x, r_y, plane_jet(local, along, x + r_x, y + r_y))
+    for i in range(ROWS):
+        for j in range(PLACE):
+            for lane in range(LANES):
+                out[i, j] += sums[i, j, lane]
 
 
 @spliced
-def _add(out: FloatArray, along: int, w: float, w_1: float, w_2: float, r_x: float, r_y: float, f: Jet) -> None:
-    """Add a point's share, along x, y or z, with the weights of P_0, a_1 and a_2."""
-    turn_x, turn_y = -r_y * f.xx + r_x * f.xy, -r_y * f.xy + r_x * f.yy
-    _put(out[AT], along, w, w_1, w_2, f.f)
-    _put(out[T], along, w, w_1, w_2, f.t)
-    _put(out[TT], along, w, w_1, w_2, f.tt)
-    _put(out[X], along, w, w_1, w_2, f.x)
-    _put(out[Y], along, w, w_1, w_2, f.y)
-    _put(out[BY], along, w, w_1, w_2, -r_y * f.x + r_x * f.y)
-    _put(out[XT], along, w, w_1, w_2, f.xt)
-    _put(out[YT], along, w, w_1, w_2, f.yt)
-    _put(out[BY_T], along, w, w_1, w_2, -r_y * f.xt + r_x * f.yt)
-    _put(out[XX], along, w, w_1, w_2, f.xx)
-    _put(out[XY], along, w, w_1, w_2, f.xy)
-    _put(out[YY], along, w, w_1, w_2, f.yy)
-    _put(out[X_BY], along, w, w_1, w_2, turn_x)
-    _put(out[Y_BY], along, w, w_1, w_2, turn_y)
-    _put(out[BY_BY], along, w, w_1, w_2, -r_y * turn_x + r_x * turn_y - r_x * f.x - r_y * f.y)
+def _add(sums: FloatArray, along: int, w: Any, w_1: Any, w_2: Any, r_x: Any, r_y: Any, f: Jet) -> None:
+    """Add a group's share, along x, y or z, with the weights of P_0, a_1 and a_2."""
+    turn_x, turn_y = r_x * f.xy - r_y * f.xx, r_x * f.yy - r_y * f.xy
+    _put(sums[AT], along, w, w_1, w_2, f.f)
+    _put(sums[T], along, w, w_1, w_2, f.t)
+    _put(sums[TT], along, w, w_1, w_2, f.tt)
+    _put(sums[X], along, w, w_1, w_2, f.x)
+    _put(sums[Y], along, w, w_1, w_2, f.y)
+    _put(sums[BY], along, w, w_1, w_2, r_x * f.y - r_y * f.x)
+    _put(sums[XT], along, w, w_1, w_2, f.xt)
+    _put(sums[YT], along, w, w_1, w_2, f.yt)
+    _put(sums[BY_T], along, w, w_1, w_2, r_x * f.yt - r_y * f.xt)
+    _put(sums[XX], along, w, w_1, w_2, f.xx)
+    _put(sums[XY], along, w, w_1, w_2, f.xy)
+    _put(sums[YY], along, w, w_1, w_2, f.yy)
+    _put(sums[X_BY], along, w, w_1, w_2, turn_x)
+    _put(sums[Y_BY], along, w, w_1, w_2, turn_y)
+    _put(sums[BY_BY], along, w, w_1, w_2, r_x * turn_y - r_y * turn_x - r_x * f.x - r_y * f.y)
 
 
 @spliced
-def _put(row: FloatArray, along: int, w: float, w_1: float, w_2: float, value: float) -> None:
-    """Add a value to a row."""
-    row[along] += w * value
-    row[3 + along] += w_1 * value
-    row[6 + along] += w_2 * value
+def _put(row: FloatArray, along: int, w: Any, w_1: Any, w_2: Any, value: Any) -> None:
+    """Add lanes to a row (9, LANES)."""
+    store(row[along], 0, load(row[along], 0) + w * value)
+    store(row[3 + along], 0, load(row[3 + along], 0) + w_1 * value)
+    store(row[6 + along], 0, load(row[6 + along], 0) + w_2 * value)

@@ -40,7 +40,7 @@ def face_states(
         state[X], state[Y], state[HEADING] = row.x, row.y, row.heading
         state[V_X], state[V_Y], state[SPIN] = row.v_x, row.v_y, row.spin
         cell, _ = enter_all(
-            surface, memory.local, memory.slots, face, row.x, row.y, row.heading, row.time, math.inf, (0.0, 0.0)
+            surface, memory.local, memory.under, face, row.x, row.y, row.heading, row.time, math.inf, (0.0, 0.0)
         )
         if cell < 0 or not settle(part, face, memory, state, row.time):
             found.x = found.y = found.z = found.centre_x = found.centre_y = found.centre_z = math.nan

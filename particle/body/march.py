@@ -7,6 +7,8 @@ forces as they are once its stop is close.
 
 from __future__ import annotations
 
+import math
+
 from particle.body.averages import enter_all
 from particle.body.balance import energy_of
 from particle.body.face import Face
@@ -36,6 +38,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
     for k in range(STATE):
         state[k] = request.start[k]
     memory.step[0].lead[:] = 0.0
+    memory.step[0].error = math.inf
     memory.balance[0].stands = 0
     now.time = now.span_end = request.begin
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
@@ -55,7 +58,7 @@ def march_body(surface: Surface, request: Request, face: Face, memory: Memory, r
         bridged = request.bridged if now.mode == Mode.SLIDING else (0.0, 0.0)
         x, y, heading = state[X], state[Y], state[HEADING]
         cell, end = enter_all(
-            surface, memory.local, memory.slots, face, x, y, heading, now.time, request.duration, bridged
+            surface, memory.local, memory.under, face, x, y, heading, now.time, request.duration, bridged
         )
         if cell < 0:
             now.verdict = Verdict.LACKS_CELL if cell == UNBUILT else Verdict.LEFT_PLATE

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Final, NamedTuple
 
-import numpy as np
 from numpy.typing import NDArray
 
-from particle.body.averages import new_locals, prepare_locals
+from particle.body.averages import Under, new_locals, new_under, prepare_locals
 from particle.body.balance import Balance
 from particle.body.collocation import STAGES
 from particle.body.face import Face
@@ -38,6 +37,7 @@ class Step(Record):
     end: Annotated[FloatArray, STATE]  # the state at the end of the step
     friction: float  # 1/s, friction's own rate as a step begins
     before: float  # s, the last step
+    error: float  # that step's, over the tolerance
     speed: float  # m/s, of the slip as a step begins
     carried: Annotated[FloatArray, 6]  # the face's carried twist before a breakpoint
     gap: Annotated[FloatArray, 3]  # of a local contact as a step begins
@@ -47,7 +47,7 @@ class Memory(NamedTuple):
     """Scratch memory of a path."""
 
     local: LocalSurface  # one for each point of the face, with an axis in front
-    slots: IntArray  # (n,) which of them each point has
+    under: Under
     balance: NDArray[Balance]  # (1,)
     search: NDArray[Search]  # (1,)
     step: NDArray[Step]  # (1,)
@@ -63,7 +63,7 @@ def new_memory(surface: Surface, face: Face, stop: IntArray) -> Memory:
     prepare_locals(surface, local)
     return Memory(
         local=local,
-        slots=np.zeros(len(face.places), dtype=np.int64),
+        under=new_under(len(face.places)),
         balance=new_records(Balance),
         search=new_records(Search),
         step=new_records(Step),

@@ -78,7 +78,7 @@ def rest_margins(
     for k in range(len(times)):
         time = times[k]
         if not time < end:
-            cell, end = enter_all(surface, memory.local, memory.slots, face, x, y, heading, time, math.inf, (0.0, 0.0))
+            cell, end = enter_all(surface, memory.local, memory.under, face, x, y, heading, time, math.inf, (0.0, 0.0))
             if cell < 0:
                 return out
         if not settle(part, face, memory, state, time):
@@ -115,7 +115,7 @@ def rest_responses(
             time, row = times[k], out[k, n]
             if not time < end:
                 cell, end = enter_all(
-                    surface, memory.local, memory.slots, face, x, y, heading, time, math.inf, (0.0, 0.0)
+                    surface, memory.local, memory.under, face, x, y, heading, time, math.inf, (0.0, 0.0)
                 )
                 if cell < 0:
                     break

@@ -20,10 +20,10 @@ from particle.surface import Surface
 FIRST = 1e-3  # of a stroke: the first moment of a slip, over which its acceleration is linear in time
 SHORT = 1e-4  # of a stroke: what is left of a span is then all in that moment
 CLOSE = 1e-6  # of the limit: how close a slip that was located begins to it
-BEFORE_STOP = 0.75  # of the time to a stop: the longest step
+BEFORE_STOP = 0.9  # of the time to a stop: the longest step
 STOPPED = 1e-7, 1e-3  # of a stroke, of the tolerance: how close a stop's time and place must be
 STIFF = 0.01  # of a step times friction's own rate, from where on Newton's method finds its stages
-PASSES, FOUND = 12, 1e-6  # FOUND: of what a step may be off by, how exactly its stages are found
+PASSES, FOUND = 12, 1e-3  # FOUND: of what a step may be off by, how exactly its stages are found
 RELATIVE = 1e-2  # of the speed as a step begins: how far a rate may be off at most
 SLOW = 0.05  # of a pass: what it leaves of the last one's change, from where on friction's turns are found anew
 LONGER = 2.0  # steps: how far the last step's accelerations are extrapolated in full
@@ -78,7 +78,7 @@ def begin_slip(request: Request, face: Face, memory: Memory) -> bool:
     after = sum(energy_of(part, face, base_at(memory.local, now.time), state[V_X], state[V_Y], state[SPIN], b))
     state[LOSS] += lost
     state[WORK] += after - before + lost
-    now.mode, now.h = Mode.SLIDING, moment
+    now.mode, now.h, memory.step[0].error = Mode.SLIDING, moment, math.inf
     return True
 
 
@@ -144,9 +144,13 @@ def slide(surface: Surface, request: Request, face: Face, memory: Memory) -> int
             for j in range(STAGES):
                 step.lead[k, i] += AHEAD[k, j] * step.rates[j, i] / power
             power *= h
-    step.before = h
+    growth = min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
+    if math.isfinite(step.error):  # as a slip comes to its stop, each step is shorter than the last by about as much
+        trend = h / step.before * (max(step.error, 1e-12) / max(error, 1e-12)) ** (1 / ORDER)
+        growth = min(growth, growth * trend)
+    step.before, step.error = h, error
     now.time = now.span_end if h == remaining else now.time + h
-    now.h = h * min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / ORDER))
+    now.h = h * growth
     return NO_EVENT
 
 
@@ -213,7 +217,7 @@ def _attempt(surface: Surface, request: Request, face: Face, memory: Memory, h: 
                 for j in range(STAGES):
                     total += A[k, j] * stages[j, V_X + i]
                 stages[k, X + i] = state[X + i] + h * total
-            if not within_cells(memory.local, memory.slots, face, stages[k, X], stages[k, Y], stages[k, HEADING]):
+            if not within_cells(memory.local, memory.under, face, stages[k, X], stages[k, Y], stages[k, HEADING]):
                 return False
             if not settle(part, face, memory, stages[k], time + NODES[k] * h):
                 return False

@@ -27,6 +27,8 @@ from particle.modes import Verdict
 from particle.surface import LocalSurface, Surface, has_rim, rim_gap
 from particle.types import FloatArray
 
+TOGETHER = 1e-12  # of the weight: an edge that lifts so little before all of a face comes off with it
+
 
 @device_no_arrays
 def base_at(local: LocalSurface, time: float) -> Base:
@@ -45,7 +47,7 @@ def base_at(local: LocalSurface, time: float) -> Base:
 def settle(part: Part, face: Face, memory: Memory, state: FloatArray, time: float) -> bool:
     """Set up the equations at a state and time; False where there are none."""
     b = memory.balance[0]
-    fill_averages(memory.local, memory.slots, face, state[X], state[Y], state[HEADING], time, b.averages)
+    fill_averages(memory.local, memory.under, state[X], state[Y], state[HEADING], time, b.averages)
     base = base_at(memory.local, time)
     memory.counts[0].evaluations += 1
     if not fill_pose(part, base, b):
@@ -104,7 +106,7 @@ def end_reason(surface: Surface, part: Part, face: Face, memory: Memory, state: 
     load = memory.balance[0].load[0]
     if rim_margin(surface, face, state) < 0.0:
         return Verdict.LEFT_PLATE
-    if load < -part.law.pull_off:
+    if load + part.law.pull_off < TOGETHER * part.mass * max(1.0, abs(part.gravity)):
         return Verdict.DETACHED
     if part.law.kind == LOCAL and load <= part.law.largest_load:
         b = memory.balance[0]

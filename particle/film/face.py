@@ -110,7 +110,7 @@ def shares(
         state[X], state[Y], state[HEADING] = row.x, row.y, row.heading
         state[V_X], state[V_Y], state[SPIN] = row.v_x, row.v_y, row.spin
         cell, _ = enter_all(
-            surface, body.local, body.slots, face, row.x, row.y, row.heading, row.time, math.inf, (0.0, 0.0)
+            surface, body.local, body.under, face, row.x, row.y, row.heading, row.time, math.inf, (0.0, 0.0)
         )
         if cell < 0:
             continue

@@ -144,8 +144,8 @@ def _enter(surface: Surface, request: Request, face: Face | tuple[()], memory: M
         allow_bridges(local, request.bridged[0], request.bridged[1])
         cell = enter(surface, local, state[X], state[Y], time, request.duration)
         return cell, local.frame[0].end
-    x, y, heading, slots = state[X], state[Y], state[HEADING], memory.body.slots
-    return enter_all(surface, local, slots, face, x, y, heading, time, request.duration, request.bridged)
+    x, y, heading, under = state[X], state[Y], state[HEADING], memory.body.under
+    return enter_all(surface, local, under, face, x, y, heading, time, request.duration, request.bridged)
 
 
 @device_no_arrays

@@ -195,7 +195,7 @@ def within(face: Face | tuple[()], memory: Memory, state: FloatArray) -> bool:
     """Whether the part is where the cells' polynomials hold."""
     if len(face) == 0:
         return within_cell(memory.local, state[X], state[Y])
-    return within_cells(memory.local, memory.body.slots, face, state[X], state[Y], state[HEADING])
+    return within_cells(memory.local, memory.body.under, face, state[X], state[Y], state[HEADING])
 
 
 @device_no_arrays

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER, evaluate_piece
 from particle.jit import device_no_arrays, jit, spliced
+from particle.lanes import at_least, log, where_zero
 from particle.surface.cells import UNBUILT
 from particle.surface.jet import Jet, at_time, fill_quintics, jet
 from particle.surface.local import Frame, LocalSurface
@@ -84,8 +85,8 @@ def set_time(local: LocalSurface, time: float) -> None:
 
 
 @spliced
-def height_here(local: LocalSurface, x: float, y: float) -> Jet:
-    """w and its derivatives at a point [m] of the prepared cell and the time of `set_time`.
+def height_here(local: LocalSurface, x: Any, y: Any) -> Jet:
+    """w and its derivatives at a point [m] of the prepared cell, or at lanes of such, and the time of `set_time`.
 
     w = sum c_ij u^i v^j + sum f_k |X - X_k|^2 ln |X - X_k|, lengths in the logarithms over the surface's size.
     """
@@ -123,7 +124,7 @@ def height_here(local: LocalSurface, x: float, y: float) -> Jet:
         h_xyt += f_t * bend_xy
         h_yyt += f_t * bend_yy
         # Within the floor the third derivatives are those of the parabola in r^2.
-        twist, cubed = f_k * per * per * per, -once * once if inner == 0.0 else 0.0
+        twist, cubed = f_k * per * per * per, where_zero(inner, -once * once)
         t_xxx += twist * d_x * (3 * once + cubed * d_x * d_x)
         t_xxy += twist * d_y * (once + cubed * d_x * d_x)
         t_xyy += twist * d_x * (once + cubed * d_y * d_y)
@@ -181,7 +182,7 @@ def surface_here(local: LocalSurface, x: float, y: float, time: float) -> Surfac
 
 
 @spliced
-def plane_jet(local: LocalSurface, along: int, x: float, y: float) -> Jet:
+def plane_jet(local: LocalSurface, along: int, x: Any, y: Any) -> Jet:
     """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded, as `height_here`."""
     frame: Frame = local.frame[0]
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
@@ -190,13 +191,13 @@ def plane_jet(local: LocalSurface, along: int, x: float, y: float) -> Jet:
 
 
 @spliced
-def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
+def _logarithm(floor: float, square: Any) -> tuple[Any, Any, Any]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
     Within the floor it is the parabola in r^2 that meets r^2 ln r with two derivatives: there `inner` is not 0.
     """
-    bounded = max(square, floor * floor)
-    return bounded, (square - bounded) / bounded, math.log(bounded)
+    bounded = at_least(square, floor * floor)
+    return bounded, (square - bounded) / bounded, log(bounded)
 
 
 @device_no_arrays

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from particle.drives import ORDER
 from particle.jit import device_no_arrays, spliced
+from particle.lanes import nought
 from particle.types import FloatArray
 
 
 class Jet(NamedTuple):
-    """A function f of (x, y, t) with its derivatives, in SI units."""
+    """A function f of (x, y, t) with its derivatives, in SI units; numbers or lanes."""
 
     f: float
     t: float
@@ -43,17 +44,18 @@ def at_time(c: FloatArray, at: FloatArray, end: int, s: float, unit: float) -> N
 
 
 @spliced
-def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
+def jet(at: FloatArray, end: int, degree: int, u: Any, v: Any, half_x: float, half_y: float) -> Jet:
     """f = sum c_ij u^i v^j, i + j <= degree, and its derivatives, with the monomials at[:, m] that end before `end`.
 
     at (3, ...): their values and two derivatives in time.  half_x, half_y: dx/du and dy/dv [m].
     """
-    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = 0.0
-    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = 0.0
+    zero = nought(u)
+    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = zero
+    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = zero
     m = end
     # Horner in v inside Horner in u; n times u or v in a name stands for the n-th derivative over n!.
     for i in range(degree, -1, -1):
-        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = 0.0
+        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = zero
         for _ in range(degree + 1 - i):
             m -= 1
             a_vvv = a_vvv * v + a_vv
