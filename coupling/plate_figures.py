@@ -190,7 +190,8 @@ def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
         return None
     known = _FIRST.setdefault(shapes, {})
     if density not in known:
-        if isinstance(shapes, PatchedShapes) and held.any():
+        # Shapes that meet a tolerance have finer cells than a frequency needs.
+        if held.any() if isinstance(shapes, PatchedShapes) else plate.tolerance is None:
             known[density] = shapes.first_frequency(density * plate.section.thickness)
         else:
             known[density] = float(plate.frequencies(1, shapes.points[held], shapes.springs[held])[0])
@@ -223,8 +224,10 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
         # The part stands on an actuator. A force k there raises the plate like a unit stroke on the spring k.
         spring = float(shapes.springs[below])
         return 0.0 if np.isinf(spring) else float(shapes.own_heights()[below]) / (spring or 1.0) * force
-    if isinstance(shapes, PatchedShapes):
+    gap = shapes.outline.gap
+    if isinstance(shapes, PatchedShapes) or gap(start)[0] >= gap(shapes.points).min():
         return shapes.compliance_at(start[0]) * force
+    # Cells along the rim are small enough for the actuators only.
     springs = np.append(shapes.springs, 0.0)
     meshed = plate if plate.tolerance is None else plate.as_meshed()
     with_part = meshed.influence(np.concatenate([shapes.points, start]), springs)
