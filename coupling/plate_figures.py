@@ -26,6 +26,7 @@ LINEAR_ERROR = 0.08
 # The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first
 # frequency: 3.3 f/f1 of strokes up and down at f. The jump of jerk at both ends of a stroke makes it ring so.
 QUASI_STATIC_ERROR = 1.65
+NEAR_RIM = 0.1  # of the plate's half width: farther from the rim, any cells give a sag to three digits
 _FIRST: WeakKeyDictionary[PlateShapes, dict[float, float]] = WeakKeyDictionary()  # Hz, by density
 
 
@@ -225,9 +226,10 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
         spring = float(shapes.springs[below])
         return 0.0 if np.isinf(spring) else float(shapes.own_heights()[below]) / (spring or 1.0) * force
     gap = shapes.outline.gap
-    if isinstance(shapes, PatchedShapes) or gap(start)[0] >= gap(shapes.points).min():
+    near = min(float(gap(shapes.points).min()), NEAR_RIM * plate.grading.half_width)
+    if isinstance(shapes, PatchedShapes) or gap(start)[0] >= near:
         return shapes.compliance_at(start[0]) * force
-    # Cells along the rim are small enough for the actuators only.
+    # As close to the rim as that, cells are small enough for the actuators only.
     springs = np.append(shapes.springs, 0.0)
     meshed = plate if plate.tolerance is None else plate.as_meshed()
     with_part = meshed.influence(np.concatenate([shapes.points, start]), springs)
