@@ -91,8 +91,10 @@ class PlateFigures:
     part_sag: float  # m, the plate's deflection under the part's largest force
 
 
-def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
-    """The figures of a plate under its drives and a part's path over it."""
+def plate_figures(
+    case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact, with_sag: bool = True
+) -> PlateFigures:
+    """The figures of a plate under its drives and a part's path over it; with_sag: else that is nan."""
     plate, shapes, drives, surface, stretch = scene.plate, scene.shapes, scene.lifts, scene.surface, scene.stretch
     deflection, slope, strain = largest(scene, case.run.duration)
     over_thickness = deflection / plate.section.thickness
@@ -100,7 +102,8 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     tipping = tipping_of(case, contact, friction)
     # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
     first = _first_frequency(plate, shapes)
-    sag = part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force))))
+    load = float(np.nanmax(np.abs(contact.normal_force)))
+    sag = part_sag(plate, shapes, trajectory, load) if with_sag else np.nan
     driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
