@@ -17,6 +17,7 @@ from particle import AnyDrive
 FloatArray = NDArray[np.float64]
 
 MOMENTS, ACTUATORS = 16, 16  # that are looked at closely: so many of each
+TOGETHER = 32  # moments summed up for at a time
 ALIKE = 1e-9  # of the largest height: drives this close stand alike
 AROUND = 8  # points on each circle around one
 RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
@@ -35,15 +36,17 @@ def extremes(
     if isinstance(shapes, PatchedShapes):
         return *steepest(shapes, heights), None
     assert isinstance(shapes, InfluenceShapes | MovingShapes)
+    heights = heights[_unlike(heights * shapes.own_heights())]
     steep = np.concatenate([shapes.functions.space.points * shapes.size, _around(shapes)])
     points = np.concatenate([steep, _rings(shapes, sharp, off)])
     value, gradient, hessian = shapes.evaluate(points)
     value, gradient = value[: len(steep)], gradient[: len(steep)]
     slopes = np.ascontiguousarray(np.moveaxis(gradient, 2, 0))  # (2, n, N)
-    slope = max(float(np.hypot(*(slopes @ h)).max()) for h in heights)
+    together = [heights[k : k + TOGETHER].T for k in range(0, len(heights), TOGETHER)]
+    slope = max(float(np.hypot(*(slopes @ h)).max()) for h in together)
     far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
     rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
-    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights) if far.any() else None
+    curvature = max(float(_principal(*(rows @ h)).max()) for h in together) if far.any() else None
     return slope, float(np.abs(heights @ value.T).max()), curvature
 
 

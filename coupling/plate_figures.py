@@ -26,6 +26,7 @@ LINEAR_ERROR = 0.08
 # The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first
 # frequency: 3.3 f/f1 of strokes up and down at f. The jump of jerk at both ends of a stroke makes it ring so.
 QUASI_STATIC_ERROR = 1.65
+NEAR_RIM = 0.1  # of the plate's half width: farther from the rim, any cells give a sag to three digits
 _FIRST: WeakKeyDictionary[PlateShapes, dict[float, float]] = WeakKeyDictionary()  # Hz, by density
 
 
@@ -90,8 +91,10 @@ class PlateFigures:
     part_sag: float  # m, the plate's deflection under the part's largest force
 
 
-def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
-    """The figures of a plate under its drives and a part's path over it."""
+def plate_figures(
+    case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact, with_sag: bool = True
+) -> PlateFigures:
+    """The figures of a plate under its drives and a part's path over it; with_sag: else that is nan."""
     plate, shapes, drives, surface, stretch = scene.plate, scene.shapes, scene.lifts, scene.surface, scene.stretch
     deflection, slope, strain = largest(scene, case.run.duration)
     over_thickness = deflection / plate.section.thickness
@@ -99,7 +102,8 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     tipping = tipping_of(case, contact, friction)
     # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
     first = _first_frequency(plate, shapes)
-    sag = part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force))))
+    load = float(np.nanmax(np.abs(contact.normal_force)))
+    sag = part_sag(plate, shapes, trajectory, load) if with_sag else np.nan
     driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
@@ -190,7 +194,8 @@ def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
         return None
     known = _FIRST.setdefault(shapes, {})
     if density not in known:
-        if isinstance(shapes, PatchedShapes) and held.any():
+        # Shapes that meet a tolerance have finer cells than a frequency needs.
+        if held.any() if isinstance(shapes, PatchedShapes) else plate.tolerance is None:
             known[density] = shapes.first_frequency(density * plate.section.thickness)
         else:
             known[density] = float(plate.frequencies(1, shapes.points[held], shapes.springs[held])[0])
@@ -223,8 +228,11 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
         # The part stands on an actuator. A force k there raises the plate like a unit stroke on the spring k.
         spring = float(shapes.springs[below])
         return 0.0 if np.isinf(spring) else float(shapes.own_heights()[below]) / (spring or 1.0) * force
-    if isinstance(shapes, PatchedShapes):
+    gap = shapes.outline.gap
+    near = min(float(gap(shapes.points).min()), NEAR_RIM * plate.grading.half_width)
+    if isinstance(shapes, PatchedShapes) or gap(start)[0] >= near:
         return shapes.compliance_at(start[0]) * force
+    # As close to the rim as that, cells are small enough for the actuators only.
     springs = np.append(shapes.springs, 0.0)
     meshed = plate if plate.tolerance is None else plate.as_meshed()
     with_part = meshed.influence(np.concatenate([shapes.points, start]), springs)

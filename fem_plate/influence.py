@@ -13,7 +13,7 @@ from scipy.sparse import diags
 from fem_plate.deflection import Estimated
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, SourceBasis
 from fem_plate.inputs import check_held
-from fem_plate.modes import HeldPlate
+from fem_plate.modes import HeldPlate, first_frequency
 from fem_plate.shapes import Shapes
 from fem_plate.types import FloatArray, IntArray
 
@@ -238,6 +238,28 @@ class InfluenceShapes(Shapes, Estimated):
     def pressure_forces(self, pressure: float) -> FloatArray:
         """The forces (N,) [N] on the plate with which actuators bear a uniform pressure [Pa]; 0 of floating ones."""
         return np.asarray(self.under_pressure(pressure).forces[:, 0] * self.stiffness_unit)
+
+    def compliance_at(self, place: ArrayLike) -> float:
+        """The deflection [m/N] at a place (2,) [m] clear of actuators under a unit force there, with these held.
+
+        By reciprocity an actuator's force there is, downwards, what a unit stroke of it lifts the place by.
+        """
+        s, held, model = np.asarray(place, dtype=float)[None] / self.size, self.springs > 0, self.model
+        one, none = np.ones((1, 1)), np.zeros((3, 1))
+        alone = PlateFunctions(model.space, model.under_forces(s), s, one, none, np.zeros(1), model.infinite)
+        x, lifts = self.points[held] / self.size, self.functions.values(s)[0, held]
+        at_held, motions = alone.values(x)[:, 0], model.motions(x)
+        moved = self._green[np.ix_(held, held)] @ lifts + lifts * self.stiffness_unit / self.springs[held] - at_held
+        rigid = model.motions(s)[0] @ np.linalg.lstsq(motions, moved)[0] if motions.size else 0.0
+        return float((alone.values(s)[0, 0] - lifts @ at_held + rigid) / self.stiffness_unit)
+
+    def first_frequency(self, inertia: float) -> float:
+        """The plate's first frequency [Hz] on these cells, with the actuators held; inertia: kg/m^2, mass per area."""
+        held, model, responses = self.springs > 0, self.model, None
+        if held.all() and not model.rigid.size:  # the shapes are these responses to the forces that raise actuators
+            responses = self.functions.unknowns @ (self._green + np.diag(self.stiffness_unit / self.springs))
+        rigidity = self.stiffness_unit * self.size**2
+        return first_frequency(HeldPlate(model, self.points[held], rigidity, self.springs[held], responses), inertia)
 
     def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
         return self._weighted(weights).evaluate(x)

@@ -31,6 +31,7 @@ MAX_MODES = 400  # so many responses are enough
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
+FIRST = 1e-7  # of a mode's residual: its square is left in the frequency
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,14 +92,23 @@ class HeldPlate:
     """A plate held at points (N, 2) [m], by the finite elements v of its trial functions.
 
     rigidity: N m.  stiffness: (N,) N/m, of the springs there; inf where the hold is rigid.
+    responses: (unknowns, N), psi without F, where they are known.
     """
 
-    def __init__(self, model: PlateModel, held: FloatArray, rigidity: float, stiffness: FloatArray) -> None:
+    def __init__(
+        self,
+        model: PlateModel,
+        held: FloatArray,
+        rigidity: float,
+        stiffness: FloatArray,
+        responses: FloatArray | None = None,
+    ) -> None:
         self.model, self.held, self.rigidity = model, held / model.mesh.size, rigidity
         compliance = np.diag(rigidity / model.mesh.size**2 / stiffness)  # dimensionless, 1/k
         space, x = model.space, self.held
         self.mass = model.mass
-        responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
+        if responses is None:
+            responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))
         at_held = space.point_values(x).tocsr()  # B
         green = model.infinite.point_value(x, x) + at_held @ responses
         inside = model.infinite.acts(x)
@@ -172,7 +182,19 @@ def modes(held_plate: HeldPlate, count: int, inertia: float, refine: Callable[[]
 
     inertia: kg/m^2, mass per area.  refine: solves on halved cells.
     """
-    unknowns, unit = held_plate.model.unknowns, held_plate.unit(inertia)
+    squares, vectors = _lowest(held_plate, count, 0.0)  # to rounding: less may miss one of two equal frequencies
+    functions, _ = held_plate.functions(vectors)
+    return Modes(np.sqrt(squares * held_plate.unit(inertia)) / (2 * np.pi), held_plate.model, functions, refine)
+
+
+def first_frequency(held_plate: HeldPlate, inertia: float) -> float:
+    """The lowest natural frequency [Hz] of a plate held at points, without its mode; inertia: kg/m^2, by area."""
+    return float(np.sqrt(_lowest(held_plate, 1, FIRST)[0][0] * held_plate.unit(inertia)) / (2 * np.pi))
+
+
+def _lowest(held_plate: HeldPlate, count: int, residual: float) -> tuple[FloatArray, FloatArray]:
+    """The lowest squared frequencies (count,), dimensionless and ascending, and their vectors (unknowns, count)."""
+    unknowns = held_plate.model.unknowns
     mass_operator = LinearOperator((unknowns, unknowns), matvec=held_plate.with_mass, dtype=float)
     squares, vectors = eigsh(
         mass_operator,  # only its shape is used: with sigma = 0 all that is solved with is OPinv
@@ -181,11 +203,10 @@ def modes(held_plate: HeldPlate, count: int, inertia: float, refine: Callable[[]
         sigma=0,
         OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
         v0=np.ones(unknowns),  # eigsh would start from a random vector, and differ from run to run
-        tol=0,  # rounding: a looser one may miss one of two equal frequencies
+        tol=residual,
     )
     order = np.argsort(squares)
-    functions, _ = held_plate.functions(vectors[:, order])
-    return Modes(np.sqrt(squares[order] * unit) / (2 * np.pi), held_plate.model, functions, refine)
+    return squares[order], vectors[:, order]
 
 
 def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -90,7 +90,7 @@ def _figures(engine: Engine, case: Case) -> dict[str, Any] | None:
         return None
     path = interruptible(follow_part, case, scene.surface, friction)
     own = {"energy_balance": path.energy.balance, "air": air_figures(case, scene, path, friction)}
-    return vars(plate_figures(case, scene, path, friction)) | own
+    return vars(plate_figures(case, scene, path, friction, with_sag=False)) | own
 
 
 def _cases(study: Study) -> Iterator[Case]:

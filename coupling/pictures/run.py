@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.transforms import ScaledTranslation
@@ -118,12 +119,13 @@ def _draw_column(
     strip.set_xlim(span[0] * unit.per_si, span[1] * unit.per_si)
     if not first:
         strip.set_title(f"Around {portrait.decisive * unit.per_si:.4g} {unit.name}, {portrait.why}", fontsize=10)
-    lost = [event.time for event in portrait.events if event.kind in LOSSES]
+    lost = [[(event.time * unit.per_si, y) for y in (0, 1)] for event in portrait.events if event.kind in LOSSES]
     panels = [figure.add_subplot(place) for place in places[1:]]
     for panel, some in zip(panels, curves, strict=True):
         keys += draw_over_time(panel, portrait.rows, some, unit, span, portrait.cycles, (first, last))
-        for time in lost:
-            panel.axvline(time * unit.per_si, color="black", linewidth=1.0, linestyle="--")
+        across = panel.get_xaxis_transform()
+        marked = LineCollection(lost, colors="black", linewidths=1.0, linestyles="--", transform=across)
+        panel.add_collection(marked, autolim=False)
         panel.tick_params(labelbottom=panel is panels[-1])
     _align_labels(panels)
     panels[-1].set_xlabel(f"time [{unit.name}]")
@@ -158,27 +160,24 @@ def draw_outlines(axes: Axes, outlines: FloatArray, unit: Unit, colour: str = "b
 
 
 def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:
-    """Mark where and when the part was lost."""
-    for event in portrait.events:
-        if event.kind in LOSSES:
-            marker, colour, text, _ = MARKS[event.kind]
-            time = unit_for(portrait.samples.time[-1], "s")
-            look: dict[str, Any] = {
-                "marker": marker,
-                "color": colour,
-                "markeredgecolor": "black",
-                "markersize": 9,
-            }
-            place = event.position[0] * unit.per_si, event.position[1] * unit.per_si
-            axes.plot(*place, **look, linestyle="", zorder=6)
-            axes.annotate(
-                f"{text} at {event.time * time.per_si:.4g} {time.name}",
-                place,
-                xytext=(8, 8),
-                textcoords="offset points",
-                path_effects=HALO,
-                zorder=7,
-            )
+    """Mark where the part was lost, and write at the last place of each kind when."""
+    time = unit_for(portrait.samples.time[-1], "s")
+    for kind in LOSSES:
+        lost = [event for event in portrait.events if event.kind is kind]
+        if not lost:
+            continue
+        marker, colour, text, _ = MARKS[kind]
+        look: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "markersize": 9}
+        places = np.array([event.position for event in lost]) * unit.per_si
+        axes.plot(*places.T, **look, linestyle="", zorder=6)
+        axes.annotate(
+            f"{text} at {lost[-1].time * time.per_si:.4g} {time.name}",
+            (places[-1, 0], places[-1, 1]),
+            xytext=(8, 8),
+            textcoords="offset points",
+            path_effects=HALO,
+            zorder=7,
+        )
 
 
 def draw_way(axes: Axes, portrait: Portrait, unit: Unit, width: float = AXES_WIDTH) -> list[Artist]:

@@ -15,7 +15,7 @@ from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Til
 from fem_plate.elements import Derivatives, PlateFunctions, source_basis
 from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
-from fem_plate.modes import HeldPlate, modes
+from fem_plate.modes import HeldPlate, first_frequency
 from fem_plate.shapes import Shapes
 from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
@@ -202,7 +202,7 @@ class PatchedShapes(Shapes):
         held = self.points[rows] - cut.origin
         model = self._array.model(self._array.cutter, cut, held)
         held_plate = HeldPlate(model, held, self._array.rigidity, self.springs[rows])
-        return float(modes(held_plate, 1, inertia).frequencies[0])
+        return first_frequency(held_plate, inertia)
 
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
         """The number of functions to evaluate; ValueError when they are too many for the points."""

@@ -121,6 +121,20 @@ def test_the_error_estimate_of_many_actuators_is_about_that_of_all_their_shapes(
     assert len(points) > 2 * SUMS and 0.8 * of_all < shapes.error_estimate < 2 * of_all
 
 
+@pytest.mark.parametrize("supports", ["clamped", "free"])
+def test_what_follows_from_the_shapes_is_as_found_from_the_plate(supports):
+    plate = Plate(disc(1.0, 0.4), PlateSection(1e11, 0.3, 0.01, 2000.0), supports)
+    place = np.array([0.1, 0.25])
+    for springs in (KINDS, np.where(KINDS > 0, KINDS, np.inf)):
+        shapes = plate.influence(SCATTERED, springs)
+        loaded = plate.influence(np.concatenate([SCATTERED, place[None]]), np.append(springs, 0.0))
+        assert shapes.compliance_at(place) == pytest.approx(loaded.own_heights()[-1], rel=1e-4)
+        held = springs > 0
+        expected = plate.frequencies(1, SCATTERED[held], springs[held])[0]
+        exact = 1e-8 if held.all() else 1e-5  # cells are those for all actuators
+        assert shapes.first_frequency(2000.0 * 0.01) == pytest.approx(expected, rel=exact)
+
+
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-8])
 def test_a_tolerance_refines_until_it_is_met(section, layout, radius, exact, spots, tolerance):
     shapes = Plate(disc(radius, radius / 3), section, tolerance=tolerance).influence(layout)
