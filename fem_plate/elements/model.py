@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, infinite_plate
+from fem_plate.elements.argyris import DEGREE
 from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy
 from fem_plate.elements.energy_form import EnergyForm
@@ -50,6 +51,7 @@ class PlateModel:
         tension: float = 0.0,
         wedges: Sequence[Wedge] = (),
         rim_points: FloatArray | None = None,
+        degree: int = DEGREE,
     ) -> None:
         self.mesh = mesh
         self.tension = tension * mesh.size**2  # dimensionless
@@ -67,7 +69,7 @@ class PlateModel:
             functions = corner_functions(wedges, mesh.size)
             self.space = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
         else:
-            self.space = PlateSpace(mesh, supports, rows)
+            self.space = PlateSpace(mesh, supports, rows, degree)
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))
 
     @property
