@@ -98,11 +98,14 @@ class Reference:
         # Inside, what quintics leave of the coefficients of what vanishes with its gradient on all edges.
         rest = np.eye(self.count) - quintics @ np.linalg.pinv(quintics)
         rows.append(rest[exponents(degree).min(axis=1) >= 2])
-        functions = np.linalg.inv(np.concatenate(rows))  # columns of coefficients
+        self.functions = np.linalg.inv(np.concatenate(rows))  # columns of coefficients
+        if self.more:
+            of_quintics = [*range(3 * CORNER), *(3 * CORNER + self.more + self.on_edge * np.arange(3))]
+            self.functions[:, of_quintics] = quintics @ reference(DEGREE).functions  # to rounding
         along_x, along_y = _from_lower(degree)[1]
         power = np.linalg.matrix_power
         self._tables = [
-            np.concatenate([power(along_x, dx) @ power(along_y, dy) @ functions for dx, dy in order], axis=1)
+            np.concatenate([power(along_x, dx) @ power(along_y, dy) @ self.functions for dx, dy in order], axis=1)
             for order in DERIVATIVES
         ]
 

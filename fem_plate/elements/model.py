@@ -14,6 +14,7 @@ from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, infinite_plate
 from fem_plate.elements.argyris import DEGREE
+from fem_plate.elements.condensed import Condensed
 from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy
 from fem_plate.elements.energy_form import EnergyForm
@@ -40,6 +41,8 @@ class PlateModel:
     tension: 1/m^2, over the rigidity too, of a plate of one law; 0 where a boundary is free.
     wedges: corners with functions of their own, of an isotropic plate.
     rim_points: (k, 2) m, on free boundaries, where forces load the elements.
+    degree: of the elements; above five of a plate of one law, without tension, that its supports hold, and without
+    corners or points of the kinds above.
     """
 
     def __init__(
@@ -53,7 +56,7 @@ class PlateModel:
         rim_points: FloatArray | None = None,
         degree: int = DEGREE,
     ) -> None:
-        self.mesh = mesh
+        self.mesh, self.degree = mesh, degree
         self.tension = tension * mesh.size**2  # dimensionless
         self.form: EnergyForm | None = None
         rows = list(free_corners)
@@ -71,6 +74,11 @@ class PlateModel:
         else:
             self.space = PlateSpace(mesh, supports, rows, degree)
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))
+
+    @cached_property
+    def condensed(self) -> Condensed | None:
+        """The equations where the degree is above five."""
+        return Condensed(self.space, self.law) if self.degree > DEGREE else None
 
     @property
     def unknowns(self) -> int:
@@ -154,6 +162,8 @@ class PlateModel:
         """
         if isinstance(self.space, EnrichedSpace):
             return self.space.solve
+        if self.condensed is not None:
+            return self.condensed.solve
         pinned = factorised(self.pinned_stiffness)
         if not self.rigid.size:
             return pinned
@@ -180,6 +190,8 @@ class PlateModel:
         """The parts (unknowns, k) that make k known functions, by their traces (t, k), meet the supports."""
         if isinstance(self.space, EnrichedSpace):
             return self.space.follow(-traces)
+        if self.condensed is not None:
+            return self.condensed.follow(-traces)
         return self.solve(-(self._load @ traces))
 
     def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:

@@ -82,12 +82,16 @@ class PlateSpace:
 
     def _bending(self, law: FloatArray) -> csc_matrix:
         """The matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q)."""
+        traces, (coupling, _) = self.traces(law), forms.rim_forms(self.rim)
+        return self.of_bending(self.bending_inside(law), self.at_rim(traces, coupling))
+
+    def bending_inside(self, law: FloatArray) -> FloatArray:
+        """int M(v):H(q) on triangles and up to the true rim, (m, i, i)."""
         matrices = forms.bending(self.triangles, law)
         triangle, points, weights = self.slivers
         hessian = self.triangles.derivatives(points, triangle, 2)
         np.add.at(matrices, triangle, forms.bending_at(hessian, weights, law))
-        traces, (coupling, _) = self.traces(law), forms.rim_forms(self.rim)
-        return self.of_bending(matrices, self.at_rim(traces, coupling))
+        return matrices
 
     def at_rim(self, traces: FloatArray, coupling: FloatArray) -> FloatArray:
         """The matrices (k, i, i) of the rim's edges: traces (6, k, n, i), coupled by (k, n, 6, 6)."""
@@ -120,6 +124,11 @@ class PlateSpace:
     def assembled(self, matrices: FloatArray) -> csc_matrix:
         """The sum of element matrices (m, i, i), in the independent unknowns."""
         return self.to_independent(self.to_independent(sum_up(matrices, self._entities, self._first)).T).tocsc()
+
+    def assembled_shared(self, matrices: FloatArray) -> csc_matrix:
+        """The same without the unknowns that triangles have alone, on a space without free corners."""
+        shared = self._entities[:, :6]
+        return sum_up(matrices, shared, self._first[: int(shared.max()) + 2])
 
     def to_independent(self, matrix: csc_matrix) -> csc_matrix:
         """Sum the rows of every triangle's own unknowns into those of the independent ones."""
@@ -161,6 +170,18 @@ class PlateSpace:
             of_left, of_right = forms.rim_tension_forms(self.rim)
             left, right = left + tension * of_left, right + tension * of_right
         return left, right
+
+    def misfit(
+        self, tables: FloatArray, couplings: tuple[FloatArray, FloatArray], traces: FloatArray, local: FloatArray
+    ) -> FloatArray:
+        """What loads the rim's channels (6, k, n, f) where unknowns (k, i, f) are to follow traces (6 points, f).
+
+        tables: (6, k, n, i), the traces of the triangles' functions.
+        """
+        left, right = couplings
+        given = traces.reshape(*tables.shape[:3], -1)
+        loads = np.einsum("kncd,dknf->cknf", left, given - tables @ local)
+        return np.asarray(loads + np.einsum("kncd,dknf->cknf", right - left, given))
 
     def point_values(self, xy: FloatArray, triangle: IntArray | None = None) -> csc_matrix:
         """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2).
