@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_plate.elements import (
     COARSE_GAIN,
+    DEGREE,
     FREE,
+    GAIN,
     MAX_EXPONENT,
     MeshGrading,
     PlateModel,
@@ -20,6 +23,8 @@ from fem_plate.elements import (
     corner_rows,
     grade_mesh,
     plate_energy,
+    rigid_motions,
+    rim_quadrature,
     singular_corners,
     wedges,
 )
@@ -29,6 +34,10 @@ from meshes import PlateMesh
 
 if TYPE_CHECKING:
     from skfem import BilinearForm
+
+# Degrees of refinement: the highest, what one adds to the last, and with which it begins at most. SPARE of what that
+# gains is not counted on.
+HIGHEST, STEP, LAST_FIRST, SPARE = 10, 2, 8, 4.0
 
 
 class GradedPlate:
@@ -76,7 +85,31 @@ class GradedPlate:
             mesh = mesh.refined()
         return grade_mesh(mesh, self.grading.halved(halvings), corners, points)
 
-    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
+    def refinement(self, points: FloatArray) -> tuple[Callable[[int], PlateModel], float]:
+        """Models for actuators at points (N, 2) [m], each finer than the last, and the least gain from one to the next.
+
+        Where what elements follow is smooth, two degrees more gain as much as cells of half the size, for less.
+        """
+        if not self.smooth or self.mesh.on_rim(points).any():
+            return partial(self.model, points), self.gain
+        first, fine = DEGREE, self.grading
+        while self.tolerance is not None and first < LAST_FIRST and fine.error(first) > GAIN * self.tolerance:
+            first += 1
+        degrees = range(first, HIGHEST + 1, STEP)
+
+        def level(k: int) -> PlateModel:
+            return self.model(points, max(k - len(degrees) + 1, 0), degrees[min(k, len(degrees) - 1)])
+
+        return level, min(fine.error(first) / fine.error(first + STEP) / SPARE, GAIN)
+
+    @cached_property
+    def smooth(self) -> bool:
+        """Whether the plate's supports hold it, one law holds everywhere, and no corner or tension bends it sharply."""
+        if self.energy is not None or self.tension or self.graded_corners:
+            return False
+        return not rigid_motions(rim_quadrature(self.mesh, self.supports)[0]).size
+
+    def model(self, points: FloatArray | None = None, halvings: int = 0, degree: int = DEGREE) -> PlateModel:
         """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
         corners = self.graded_corners
         rim_points = np.empty((0, 2))
@@ -87,19 +120,21 @@ class GradedPlate:
         if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
         mesh = self._graded(corners, points, halvings)
-        key = mesh.points.tobytes() + rim_points.tobytes()
+        key = mesh.points.tobytes() + rim_points.tobytes() + bytes([degree])
         if self._last is None or self._last[0] != key:
-            self._last = key, self.model_on(mesh, self.tension, rim_points)
+            self._last = key, self.model_on(mesh, self.tension, rim_points, degree)
         return self._last[1]
 
-    def model_on(self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None) -> PlateModel:
-        """The plate on cells as they are, under another tension [N/m]; rim_points: as of `PlateModel`."""
+    def model_on(
+        self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None, degree: int = DEGREE
+    ) -> PlateModel:
+        """The plate on cells as they are, under another tension [N/m]; rim_points, degree: as of `PlateModel`."""
         rows = corner_rows(mesh, self._other_corners)
         if self.energy is not None:
             energy = replace(self.energy, tension=tension, size=mesh.size)
             return PlateModel(mesh, self.supports, energy, rows, rim_points=rim_points)
         law, relative = self.section.law, tension / self.section.rigidity
-        return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points)
+        return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points, degree)
 
     @property
     def free_boundaries(self) -> tuple[str, ...]:

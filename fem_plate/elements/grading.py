@@ -21,6 +21,8 @@ MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
 # What halving the cells is sure to divide the error of w by: without layers (observed: 2^5.5 and more), with cells at
 # the rim of up to COARSE_LAYER widths of a layer, and with larger ones.
 GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 2.0**5, 8.0, 2.0, 6.0
+# Without corners w is off by about ERROR (RATE h)^(degree + 1) of its largest value, h the cells over the half width.
+ERROR, RATE = 100.0, 0.28
 MIN_CELL = 1e-6  # of the plate's size, at corners on the plate's own cells
 FINER, LEAST_CELL = 64.0, 1e-8  # what halving the cells divides that by, down to where rounding is more than accuracy
 
@@ -82,6 +84,10 @@ class MeshGrading:
         if self.at_layer >= self.cell:
             return GAIN
         return LAYER_GAIN if self.at_layer <= COARSE_LAYER * self.layer else COARSE_GAIN
+
+    def error(self, degree: int) -> float:
+        """About how far off w is, relative to its largest value, of a plate of one law without corners or tension."""
+        return float(ERROR * (RATE * self.cell / self.half_width) ** (degree + 1))
 
     def halved(self, times: int = 1) -> MeshGrading:
         """The fineness of cells halved so many times."""

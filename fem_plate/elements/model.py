@@ -31,6 +31,7 @@ from meshes import PlateMesh
 CHUNK = 128  # forces solved for at a time, to bound memory
 FREE = 1e-10  # of the largest energy of a rigid motion: those with less are free
 EPSILON = float(np.finfo(float).eps)
+ROUNDING = 3e-20  # of w over the square of the number of unknowns, at degrees above five, as measured
 
 
 class PlateModel:
@@ -122,7 +123,7 @@ class PlateModel:
     def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
         if self.form is None:
-            return self.basis(x, held).rounding
+            return self.basis(x, held).rounding + (ROUNDING * self.unknowns**2 if self.degree > DEGREE else 0.0)
         # Second differences of Green's functions lose digits with the square of the distance between actuators.
         apart = np.linalg.norm(x[held][:, None] - x[held], axis=-1) + np.where(np.eye(int(held.sum())), np.inf, 0.0)
         return float(EPSILON / apart.min(initial=1.0) ** 2)

@@ -116,7 +116,7 @@ def _slivers(triangle: IntArray, chords: FloatArray, points: FloatArray, tangent
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
     across = gauss[:, None, None]
     area = cross(bulge, along[curved, None] + across * growth)
-    inside = (chord + across * bulge).reshape(len(bulge), -1, 2)
+    inside = (chord + across * bulge).reshape(len(bulge), len(gauss) ** 2, 2)
     return Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(inside.shape[:2]))
 
 
