@@ -51,7 +51,7 @@ class Goursat:
         return [np.stack([self.part(f) for f in order]) for order in orders]
 
 
-HELD = [name for name, (_, supports) in PLATES.items() if supports and {C, S} & set(supports.values())]
+HELD = ["disc", "simply supported disc", "ellipse", "annulus", "clamped rectangle", "cantilever", "every kind"]
 
 
 @pytest.mark.parametrize("name, degree", [*((name, 5) for name in PLATES), *((n, d) for n in HELD for d in (7, 10))])
@@ -59,8 +59,6 @@ def test_biharmonic_polynomials_come_back_from_their_rim_data(name, degree):
     mesh, supports = PLATES[name]
     supports = supports or dict(zip("abcdef", (C, S, F, S, F, C), strict=True))
     model = PlateModel(mesh, supports, LAW, degree=degree)
-    if degree > 5 and model.rigid.size:
-        return
     rim, polynomials = model.space.rim, [Goursat(n, k, imaginary) for n, k in CASES for imaginary in (False, True)]
     traces = [rim_traces(polynomial(rim.points), rim.normal, LAW).ravel() for polynomial in polynomials]
     given = np.stack(traces, axis=1)
