@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 # Degrees of refinement: the highest, what one adds to the last, and with which it begins at most. SPARE of what that
 # gains is not counted on.
 HIGHEST, STEP, LAST_FIRST, SPARE = 10, 2, 8, 4.0
+MILD = 2.0  # exponents of corners from which on second derivatives are as continuous there as functions'
 
 
 class GradedPlate:
@@ -79,11 +80,13 @@ class GradedPlate:
         """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
         return self._graded([*self.corners, *corners], points, halvings)
 
-    def _graded(self, corners: list[SingularCorner], points: FloatArray | None, halvings: int) -> PlateMesh:
+    def _graded(
+        self, corners: list[SingularCorner], points: FloatArray | None, halvings: int, degree: int = DEGREE
+    ) -> PlateMesh:
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        return grade_mesh(mesh, self.grading.halved(halvings), corners, points)
+        return grade_mesh(mesh, replace(self.grading.halved(halvings), degree=degree), corners, points)
 
     def refinement(self, points: FloatArray) -> tuple[Callable[[int], PlateModel], float]:
         """Models for actuators at points (N, 2) [m], each finer than the last, and the least gain from one to the next.
@@ -105,7 +108,7 @@ class GradedPlate:
     @cached_property
     def smooth(self) -> bool:
         """Whether the plate's supports hold it, one law holds everywhere, and no corner or tension bends it sharply."""
-        if self.energy is not None or self.tension or self.graded_corners:
+        if self.energy is not None or self.tension or any(corner.exponent < MILD for corner in self.graded_corners):
             return False
         return not rigid_motions(rim_quadrature(self.mesh, self.supports)[0]).size
 
@@ -119,7 +122,7 @@ class GradedPlate:
             corners += [SingularCorner(point, 1.0) for point in rim_points]
         if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
-        mesh = self._graded(corners, points, halvings)
+        mesh = self._graded(corners, points, halvings, degree)
         key = mesh.points.tobytes() + rim_points.tobytes() + bytes([degree])
         if self._last is None or self._last[0] != key:
             self._last = key, self.model_on(mesh, self.tension, rim_points, degree)
@@ -129,7 +132,7 @@ class GradedPlate:
         self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None, degree: int = DEGREE
     ) -> PlateModel:
         """The plate on cells as they are, under another tension [N/m]; rim_points, degree: as of `PlateModel`."""
-        rows = corner_rows(mesh, self._other_corners)
+        rows = corner_rows(mesh, self._other_corners) if degree == DEGREE else []
         if self.energy is not None:
             energy = replace(self.energy, tension=tension, size=mesh.size)
             return PlateModel(mesh, self.supports, energy, rows, rim_points=rim_points)

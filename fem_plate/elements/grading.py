@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fem_plate.elements.argyris import DEGREE
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
 from fem_plate.types import FloatArray
 from meshes import PlateMesh, areas
@@ -58,6 +59,7 @@ class MeshGrading:
     layer: float = np.inf  # m, over which a tension's boundary layer decays
     at_layer: float = np.inf  # m, of the cells there
     least: float = MIN_CELL  # of the size, of the cells at corners
+    degree: int = DEGREE  # of the elements
 
     @staticmethod
     def of(mesh: PlateMesh, tension: float = 0.0) -> MeshGrading:
@@ -96,7 +98,8 @@ class MeshGrading:
 
     def at_corner(self, corner: SingularCorner) -> tuple[float, bool]:
         """The size [m] of the cells at a corner, and whether they are as small as is good for its error."""
-        needed = (corner.error * (self.cell / self.size) ** 6) ** (1 / (2 * corner.exponent))
+        others = (self.cell / self.size) ** 6 * self.error(self.degree) / self.error(DEGREE)
+        needed = (corner.error * others) ** (1 / (2 * corner.exponent))
         return min(self.size * max(needed, self.least), corner.largest), needed >= self.least
 
 
