@@ -108,7 +108,8 @@ class GradedPlate:
     @cached_property
     def smooth(self) -> bool:
         """Whether the plate's supports hold it, one law holds everywhere, and no corner or tension bends it sharply."""
-        if self.energy is not None or self.tension or any(corner.exponent < MILD for corner in self.graded_corners):
+        singular = self.enriched_corners or any(corner.exponent < MILD for corner in self.corners)
+        if self.energy is not None or self.tension or singular:
             return False
         return not rigid_motions(rim_quadrature(self.mesh, self.supports)[0]).size
 
