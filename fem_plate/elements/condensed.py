@@ -39,12 +39,12 @@ class Condensed:
     def solve(self, load: FloatArray) -> FloatArray:
         """The unknowns (unknowns, ...) under loads (unknowns, ...)."""
         loads = load.reshape(len(load), -1)
-        own = self._inverse @ loads[self._count :].reshape(len(self._dofs), -1, loads.shape[1])
+        own = self._inverse @ loads[self._count :].reshape(*self._inverse.shape[:2], loads.shape[1])
         shared = loads[: self._count].copy()
         np.subtract.at(shared, self._dofs, self._border.transpose(0, 2, 1) @ own)
         shared = self._factor(shared)
         own -= self._follow @ shared[self._dofs]
-        return np.concatenate([shared, own.reshape(-1, loads.shape[1])]).reshape(load.shape)
+        return np.concatenate([shared, own.reshape(len(load) - self._count, -1)]).reshape(load.shape)
 
     def follow(self, traces: FloatArray) -> FloatArray:
         """The unknowns (unknowns, k) that make up at the rim for known functions, given by the traces (6 points, k).
