@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,22 +91,32 @@ class GradedPlate:
     def refinement(self, points: FloatArray) -> tuple[Callable[[int], PlateModel], float]:
         """Models for actuators at points (N, 2) [m], each finer than the last, and the least gain from one to the next.
 
-        Where what elements follow is smooth, two degrees more gain as much as cells of half the size, for less.
+        Two degrees more gain as much as cells of half the size, for less; beyond the last of them cells are halved.
         """
-        if not self.smooth or self.mesh.on_rim(points).any():
-            return partial(self.model, points), self.gain
-        first, fine = DEGREE, self.grading
-        while self.tolerance is not None and first < LAST_FIRST and fine.error(first) > GAIN * self.tolerance:
-            first += 1
-        degrees = range(first, HIGHEST + 1, STEP)
+        degrees = self._degrees(points)
 
         def level(k: int) -> PlateModel:
             return self.model(points, max(k - len(degrees) + 1, 0), degrees[min(k, len(degrees) - 1)])
 
-        return level, min(fine.error(first) / fine.error(first + STEP) / SPARE, GAIN)
+        if len(degrees) == 1:
+            return level, self.gain
+        gain = self.grading.error(degrees[0]) / self.grading.error(degrees[1])
+        return level, min(gain / SPARE, GAIN)
+
+    def _degrees(self, points: FloatArray) -> Sequence[int]:
+        """The degrees that elements go through: five alone where what they follow is not smooth.
+
+        The second of them is about what meets the tolerance.
+        """
+        if not self._smooth or self.mesh.on_rim(points).any():
+            return [DEGREE]
+        first = DEGREE
+        while self.tolerance is not None and first < LAST_FIRST and self.grading.error(first) > GAIN * self.tolerance:
+            first += 1
+        return range(first, HIGHEST + 1, STEP)
 
     @cached_property
-    def smooth(self) -> bool:
+    def _smooth(self) -> bool:
         """Whether the plate's supports hold it, one law holds everywhere, and no corner or tension bends it sharply."""
         singular = self.enriched_corners or any(corner.exponent < MILD for corner in self.corners)
         if self.energy is not None or self.tension or singular:
