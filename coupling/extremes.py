@@ -27,9 +27,9 @@ def extremes(
 ) -> tuple[float, float, float | None]:
     """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
-    They are those at the samples of the elements and on circles around the actuators, where the slope is largest. Curvatures are
-    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite; None where no point
-    is as far. Of very many actuators, slope and deflection over the neighbourhood of those where they must be.
+    They are those at the elements' samples and on circles around the actuators, where the slope is largest. Curvatures
+    are principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite; None where no
+    point is as far. Of very many actuators, slope and deflection over the neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if isinstance(shapes, PatchedShapes):

@@ -2,9 +2,10 @@
 
 A triangle's 21 unknowns of degree five are value, gradient and second derivatives at each corner and the normal
 derivative at the middle of each edge (Argyris, Fried and Scharpf, 1968). Each degree more adds a value and a slope to
-each edge, and what no other triangle has; of a quintic these are 0. The functions follow from those of one
-reference triangle by a matrix that needs no inversion (Dominguez and Sayas, 2008): x = origin + J xi carries values over as they are, gradients by J^T, second derivatives by
-J^T H J, and the slope across an edge through the slope along it, which the unknowns of the edge determine.
+each edge, and what no other triangle has; of a quintic these are 0. The functions follow from those of one reference
+triangle by a matrix that needs no inversion (Dominguez and Sayas, 2008): x = origin + J xi carries values over as they
+are, gradients by J^T, second derivatives by J^T H J, and the slope across an edge through the slope along it, which the
+unknowns of the edge determine.
 """
 
 from __future__ import annotations
@@ -53,8 +54,10 @@ def polynomials(x: FloatArray, y: FloatArray, dx: int = 0, dy: int = 0, degree: 
 
 @lru_cache
 def _from_lower(degree: int) -> tuple[FloatArray, FloatArray]:
-    """Bernstein's polynomials of the degree below as sums of those of a degree, (n, lower); and the slopes along x and y
-    of those of the degree (columns) as sums of these polynomials, (2, n, n)."""
+    """Bernstein's polynomials of the degree below as sums of those of a degree, (n, lower), and the latter's slopes.
+
+    These are along x and y, of each polynomial (columns) as sums of them all, (2, n, n).
+    """
     row = {tuple(power): k for k, power in enumerate(exponents(degree).tolist())}
     lower = exponents(degree - 1)
     raised, lowered = np.zeros((len(row), len(lower))), np.zeros((3, len(lower), len(row)))
@@ -78,8 +81,7 @@ class Reference:
         self.on_edge = 2 * self.more + 1
         self.own = self.count - 3 * (CORNER + self.on_edge)  # unknowns that no other triangle has
         # What an edge that is seen from its other end multiplies its unknowns by.
-        orders = [*range(DEGREE + 1, degree + 1), 0, *range(DEGREE, degree)]
-        self.turned = (-1.0) ** np.array(orders)
+        self.turned = (-1.0) ** np.array([*range(DEGREE + 1, degree + 1), 0, *range(DEGREE, degree)])
         s, weights = unit_gauss(degree + 1)
         moments = weights[:, None] * np.polynomial.legendre.legvander(2 * s - 1, degree)
         self._s = np.append(s, 0.5)
@@ -89,11 +91,13 @@ class Reference:
         quintics = np.eye(21)
         for k in range(DEGREE + 1, degree + 1):
             quintics = _from_lower(k)[0] @ quintics
-        rows = [polynomials(*corner, *d, degree)[None] for corner in CORNERS for o in range(3) for d in DERIVATIVES[o]]
+        orders = [d for order in DERIVATIVES[:3] for d in order]
+        rows = [polynomials(x, y, dx, dy, degree)[None] for x, y in CORNERS for dx, dy in orders]
         for a, b in EDGES:
             along = CORNERS[b] - CORNERS[a]
             points = CORNERS[a] + self._s[:, None] * along
-            value, x, y = (polynomials(*points.T, *d, degree) for d in ((0, 0), (1, 0), (0, 1)))
+            u, v = points.T
+            value, x, y = (polynomials(u, v, dx, dy, degree) for dx, dy in orders[:3])
             rows += [self._of_values @ value, self._of_slopes @ (along[1] * x - along[0] * y)]  # turned right
         # Inside, what quintics leave of the coefficients of what vanishes with its gradient on all edges.
         rest = np.eye(self.count) - quintics @ np.linalg.pinv(quintics)
@@ -122,7 +126,7 @@ class Reference:
         """
         points = CORNERS[0] + self._s[:, None] * (CORNERS[1] - CORNERS[0])
         own = [0, 1, 3, 6, 7, 9, *range(3 * CORNER, 3 * CORNER + self.more)]
-        return np.asarray(self._of_slopes @ self.derivatives(*points.T, 1)[:, 0, own])
+        return np.asarray(self._of_slopes @ self.derivatives(points[:, 0], points[:, 1], 1)[:, 0, own])
 
 
 reference = lru_cache(Reference)

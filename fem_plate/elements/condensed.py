@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_plate.elements import forms
-from fem_plate.elements.assembly import sum_up
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.space import PlateSpace
 from fem_plate.types import FloatArray

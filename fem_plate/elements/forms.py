@@ -60,7 +60,7 @@ def _reference_matrices(degree: int) -> tuple[FloatArray, FloatArray, FloatArray
     """int h_a h_b of the reference functions' second derivatives, symmetrised (6, n, n); likewise of the first
     (3, n, n); int v q (n, n)."""
     xy, weights = triangle_quadrature(degree + 2)
-    value, first, second = (reference(degree).derivatives(*xy.T, order) for order in range(3))
+    value, first, second = (reference(degree).derivatives(xy[:, 0], xy[:, 1], order) for order in range(3))
     curvature = np.einsum("n,naj,nbk->abjk", weights, second, second, optimize=True)
     slopes = np.einsum("n,naj,nbk->abjk", weights, first, first, optimize=True)
     return (
@@ -88,7 +88,8 @@ def stretching(triangles: Triangles) -> FloatArray:
 
 def mass(triangles: Triangles) -> FloatArray:
     """int v q on straight-sided triangles, (m, n, n)."""
-    return _to_unknowns(triangles, triangles.determinant[:, None, None] * _reference_matrices(triangles.functions.degree)[2])
+    own = _reference_matrices(triangles.functions.degree)[2]
+    return _to_unknowns(triangles, triangles.determinant[:, None, None] * own)
 
 
 def _to_unknowns(triangles: Triangles, matrices: FloatArray) -> FloatArray:
