@@ -14,6 +14,7 @@ from skfem.helpers import dd, ddot, trace
 from fem_plate.elements import forms
 from fem_plate.elements.argyris import Triangles
 from fem_plate.elements.assembly import number_entities, sum_up
+from fem_plate.sections import bending_law
 from meshes import PlateMesh, disc
 
 CELLS_FROM_CENTRE = (4, 8, 16)
@@ -29,8 +30,9 @@ def bending(u, v, _):  # type: ignore[no-untyped-def]
 
 
 def ours(mesh: PlateMesh) -> csc_matrix:
-    entities, first = number_entities(mesh.triangles, mesh.triangles)
-    return sum_up(forms.bending(Triangles(mesh.points, mesh.triangles), POISSON_RATIO), entities, first)
+    triangles = Triangles(mesh.points, mesh.triangles)
+    entities, first = number_entities(mesh.triangles, mesh.triangles, triangles.functions)
+    return sum_up(forms.bending(triangles, bending_law(POISSON_RATIO)), entities, first)
 
 
 def stock(mesh: PlateMesh) -> csc_matrix:

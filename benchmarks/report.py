@@ -14,7 +14,8 @@ OURS = "active-surface"
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 # Drawn: prefix of the method's name, colour, marker.
 STYLES = {
-    OURS: ("#111111", "o"),
+    "active-surface, degree 5": ("#7d6608", "o"),
+    "active-surface, to a tolerance": ("#111111", "o"),
     "scikit-fem Argyris": ("#c0392b", "s"),
     "scikit-fem Morley": ("#e59866", "D"),
     "NGSolve, point loads": ("#7f8c8d", "v"),
@@ -65,10 +66,10 @@ def time_to(figures: Sequence[Figures], target: float) -> float:
 
 
 def targets_table(figures: Sequence[Figures]) -> list[str]:
-    """Times to several Hessian errors over ours, by method and for NGSolve's best."""
+    """Times to several Hessian errors over our best, by method and for NGSolve's best."""
     methods = by_method(figures)
     times = {name: [time_to(runs, target) for target in TARGETS] for name, runs in methods.items()}
-    ours = times.pop(OURS)
+    ours = np.min([row for name, row in times.items() if name.startswith(OURS)], axis=0).tolist()
     lines = ["| time over ours to a Hessian error of | " + " | ".join(f"{t:.0e}" for t in TARGETS) + " |"]
     lines.append("|---|" + "---:|" * len(TARGETS))
     if ngsolve := [row for name, row in times.items() if name.startswith("NGSolve")]:
@@ -95,7 +96,7 @@ def draw(figures: Sequence[Figures], unit: int) -> None:
             continue
         colour, marker = STYLES[name]
         errors = [f.errors[2] for f in runs]
-        width = 2.2 if name == OURS else 1.3
+        width = 2.2 if name.startswith(OURS) else 1.3
         for axis, x in zip(axes, ([f.unknowns for f in runs], [f.time[0] for f in runs]), strict=True):
             axis.loglog(x, errors, color=colour, marker=marker, lw=width, ms=5, label=name)
     axes[0].set(xlabel="unknowns", ylabel="largest error of the Hessian, relative")

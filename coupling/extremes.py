@@ -28,16 +28,16 @@ def extremes(
 ) -> tuple[float, float, float | None]:
     """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
-    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
-    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite; None where no point
-    is as far. Of very many actuators, slope and deflection over the neighbourhood of those where they must be.
+    They are those at the elements' samples and on circles around the actuators, where the slope is largest. Curvatures
+    are principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite; None where no
+    point is as far. Of very many actuators, slope and deflection over the neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if isinstance(shapes, PatchedShapes):
         return *steepest(shapes, heights), None
     assert isinstance(shapes, InfluenceShapes | MovingShapes)
     heights = heights[_unlike(heights * shapes.own_heights())]
-    steep = np.concatenate([shapes.functions.space.points * shapes.size, _around(shapes)])
+    steep = np.concatenate([shapes.functions.space.samples * shapes.size, _around(shapes)])
     points = np.concatenate([steep, _rings(shapes, sharp, off)])
     value, gradient, hessian = shapes.evaluate(points)
     value, gradient = value[: len(steep)], gradient[: len(steep)]

@@ -23,7 +23,7 @@ class Estimated:
 
     functions: PlateFunctions
     size: float  # m, the length that makes the functions dimensionless
-    refine: Callable[[], Self]  # solves again on cells of half the size
+    refine: Callable[[], Self]  # solves again on cells of half the size, or by elements of a higher degree
     rounding: float = 0.0  # error of w that finer cells have as well, relative as the estimate
 
     @property
@@ -35,13 +35,13 @@ class Estimated:
     def error_estimate(self) -> float:
         """Estimated largest error of w, relative to each function's largest deflection.
 
-        It is the difference from the solution on cells of half the size, which is computed on first use, and rounding.
+        It is the difference from a finer solution, which is computed on first use, and rounding.
         """
         return self.refine().difference(self) + self.rounding
 
     def difference(self, coarser: Estimated) -> float:
-        """The largest difference from a solution on another mesh, at this mesh's points, relative as the estimate."""
-        x = self.functions.space.points
+        """The largest difference from a solution on another mesh, at this space's samples, relative as the estimate."""
+        x = self.functions.space.samples
         w = self.functions.values(x)
         # New points on a curved rim may make the refined mesh's box, and so its size, a little larger.
         w_coarser = coarser.functions.values(x * (self.size / coarser.size))
@@ -53,30 +53,30 @@ Solution = TypeVar("Solution", bound=Estimated)
 
 
 def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: float = GAIN) -> Solution:
-    """The solution on cells halved as often as the tolerance requires; without one, on the cells as they are.
+    """The solution as fine as the tolerance requires; without one, the coarsest.
 
-    solve: takes the number of halvings.  gain: what a halving divides the error of w by, at least.
+    solve: takes the level of fineness.  gain: what a level more divides the error of w by, at least.
     """
-    solution = _on_halved(solve, 0)
+    solution = _at_level(solve, 0)
     if tolerance is None:
         return solution
-    change, halvings = np.inf, 0
+    change, level = np.inf, 0
     least = tolerance + solution.rounding  # finer cells do not lessen rounding
-    while 4 * solution.unknowns < MAX_UNKNOWNS and (not halvings or solution.error_estimate > least):
-        halvings += 1
-        coarse, solution = solution, _on_halved(solve, halvings)
+    while 4 * solution.unknowns < MAX_UNKNOWNS and (not level or solution.error_estimate > least):
+        level += 1
+        coarse, solution = solution, _at_level(solve, level)
         last_change, change = change, solution.difference(coarse)
         solution.error_estimate = change * max(change / last_change, 1 / gain) + solution.rounding
         if change > last_change / 2:
-            # Halving gains no more: the rest is rounding, or the estimates were too optimistic.
+            # It gains no more: the rest is rounding, or the estimates were too optimistic.
             coarse.error_estimate, solution.error_estimate = (e + solution.rounding for e in (last_change, change))
             return coarse if last_change < change else solution
     return solution
 
 
-def _on_halved(solve: Callable[[int], Solution], times: int) -> Solution:
-    found = solve(times)
-    found.refine = partial(_on_halved, solve, times + 1)
+def _at_level(solve: Callable[[int], Solution], level: int) -> Solution:
+    found = solve(level)
+    found.refine = partial(_at_level, solve, level + 1)
     return found
 
 
@@ -97,6 +97,7 @@ class Deflection(Estimated):
         self.model, self.forces, self.load = model, forces, pressure
         self.size = model.mesh.size
         x = points / self.size
+        self.rounding = model.rounding(x, np.zeros(len(x), dtype=bool))
         scaled_forces = forces[:, None] * self.size**2 / rigidity  # in metres of deflection
         scaled_pressure = pressure * self.size**4 / rigidity
         self._check_balance(x, scaled_forces, scaled_pressure)

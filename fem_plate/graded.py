@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_plate.elements import (
     COARSE_GAIN,
+    DEGREE,
     FREE,
+    GAIN,
     MAX_EXPONENT,
     MeshGrading,
     PlateModel,
@@ -20,6 +23,8 @@ from fem_plate.elements import (
     corner_rows,
     grade_mesh,
     plate_energy,
+    rigid_motions,
+    rim_quadrature,
     singular_corners,
     wedges,
 )
@@ -29,6 +34,11 @@ from meshes import PlateMesh
 
 if TYPE_CHECKING:
     from skfem import BilinearForm
+
+# Degrees of refinement: the highest, what one adds to the last, and with which it begins at most. SPARE of what that
+# gains is not counted on.
+HIGHEST, STEP, LAST_FIRST, SPARE = 10, 2, 8, 4.0
+MILD = 2.0  # exponents of corners from which on second derivatives are as continuous there as functions'
 
 
 class GradedPlate:
@@ -70,13 +80,50 @@ class GradedPlate:
         """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
         return self._graded([*self.corners, *corners], points, halvings)
 
-    def _graded(self, corners: list[SingularCorner], points: FloatArray | None, halvings: int) -> PlateMesh:
+    def _graded(
+        self, corners: list[SingularCorner], points: FloatArray | None, halvings: int, degree: int = DEGREE
+    ) -> PlateMesh:
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        return grade_mesh(mesh, self.grading.halved(halvings), corners, points)
+        return grade_mesh(mesh, replace(self.grading.halved(halvings), degree=degree), corners, points)
 
-    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
+    def refinement(self, points: FloatArray) -> tuple[Callable[[int], PlateModel], float]:
+        """Models for actuators at points (N, 2) [m], each finer than the last, and the least gain from one to the next.
+
+        Two degrees more gain as much as cells of half the size, for less; beyond the last of them cells are halved.
+        """
+        degrees = self._degrees(points)
+
+        def level(k: int) -> PlateModel:
+            return self.model(points, max(k - len(degrees) + 1, 0), degrees[min(k, len(degrees) - 1)])
+
+        if len(degrees) == 1:
+            return level, self.gain
+        gain = self.grading.error(degrees[0]) / self.grading.error(degrees[1])
+        return level, min(gain / SPARE, GAIN)
+
+    def _degrees(self, points: FloatArray) -> Sequence[int]:
+        """The degrees that elements go through: five alone where what they follow is not smooth.
+
+        The second of them is about what meets the tolerance.
+        """
+        if not self._smooth or self.mesh.on_rim(points).any():
+            return [DEGREE]
+        first = DEGREE
+        while self.tolerance is not None and first < LAST_FIRST and self.grading.error(first) > GAIN * self.tolerance:
+            first += 1
+        return range(first, HIGHEST + 1, STEP)
+
+    @cached_property
+    def _smooth(self) -> bool:
+        """Whether the plate's supports hold it, one law holds everywhere, and no corner or tension bends it sharply."""
+        singular = self.enriched_corners or any(corner.exponent < MILD for corner in self.corners)
+        if self.energy is not None or self.tension or singular:
+            return False
+        return not rigid_motions(rim_quadrature(self.mesh, self.supports)[0]).size
+
+    def model(self, points: FloatArray | None = None, halvings: int = 0, degree: int = DEGREE) -> PlateModel:
         """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
         corners = self.graded_corners
         rim_points = np.empty((0, 2))
@@ -86,20 +133,22 @@ class GradedPlate:
             corners += [SingularCorner(point, 1.0) for point in rim_points]
         if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
-        mesh = self._graded(corners, points, halvings)
-        key = mesh.points.tobytes() + rim_points.tobytes()
+        mesh = self._graded(corners, points, halvings, degree)
+        key = mesh.points.tobytes() + rim_points.tobytes() + bytes([degree])
         if self._last is None or self._last[0] != key:
-            self._last = key, self.model_on(mesh, self.tension, rim_points)
+            self._last = key, self.model_on(mesh, self.tension, rim_points, degree)
         return self._last[1]
 
-    def model_on(self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None) -> PlateModel:
-        """The plate on cells as they are, under another tension [N/m]; rim_points: as of `PlateModel`."""
-        rows = corner_rows(mesh, self._other_corners)
+    def model_on(
+        self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None, degree: int = DEGREE
+    ) -> PlateModel:
+        """The plate on cells as they are, under another tension [N/m]; rim_points, degree: as of `PlateModel`."""
+        rows = corner_rows(mesh, self._other_corners) if degree == DEGREE else []
         if self.energy is not None:
             energy = replace(self.energy, tension=tension, size=mesh.size)
             return PlateModel(mesh, self.supports, energy, rows, rim_points=rim_points)
         law, relative = self.section.law, tension / self.section.rigidity
-        return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points)
+        return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points, degree)
 
     @property
     def free_boundaries(self) -> tuple[str, ...]:

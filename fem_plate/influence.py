@@ -132,7 +132,7 @@ def sums_on(model: PlateModel, coarse: InfluenceShapes, values: FloatArray, weig
     )
     give = coarse.stiffness_unit / ratio**2 / coarse.springs[held, None]
     off = after.values(x)[held] + forces[held] * give - weights[held]
-    return np.asarray(after.values(model.space.points) - values[:, held] @ off - values @ weights)
+    return np.asarray(after.values(model.space.samples) - values[:, held] @ off - values @ weights)
 
 
 def unheld_shapes(
@@ -169,7 +169,7 @@ class InfluenceShapes(Shapes, Estimated):
     unit force there [m/N].
 
     free_motions: whether the plate may be left rigid motions; then its shapes carry none of their momentum.
-    finer: the model on cells of half the size.
+    finer: the model of the next level of fineness.
     """
 
     def __init__(
@@ -196,14 +196,14 @@ class InfluenceShapes(Shapes, Estimated):
     def error_estimate(self) -> float:
         """Estimated largest error of w, relative to each shape's largest deflection.
 
-        It is the difference from the shapes on cells of half the size, which are computed on first use, and rounding.
+        It is the difference from finer shapes, which are computed on first use, and rounding.
         Of many actuators it is the root of the sum of squares of all shapes' differences at the worst place, found from
         random sums of them: as large as that of the worst shape, or somewhat larger.
         """
         if len(self.points) <= 2 * SUMS or self.rounding:  # actuators nearly coincide: sums of forces would cancel
             return super().error_estimate
         model = self.finer()
-        shapes = self.values(model.space.points * model.mesh.size)
+        shapes = self.values(model.space.samples * model.mesh.size)
         signs = np.random.default_rng(0).choice([-1.0, 1.0], (len(self.points), SUMS))
         off = sums_on(model, self, shapes, signs / np.abs(shapes).max(axis=0)[:, None])
         return float(np.sqrt(np.square(off).mean(axis=1).max()))

@@ -173,7 +173,7 @@ class HeldPlate:
             np.zeros(count),
             self.model.infinite,
         )
-        largest = np.abs(whole.values(whole.space.points)).max(axis=0)
+        largest = np.abs(whole.values(whole.space.samples)).max(axis=0)
         return whole.weighted(np.diag(1 / largest)), largest
 
 

@@ -159,17 +159,13 @@ class Plate(GradedPlate):
             shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
         else:
             rigidity = self.section.rigidity
+            model, gain = self.refinement(points)
             shapes = refined(
-                lambda halvings: InfluenceShapes(
-                    self.model(points, halvings),
-                    points,
-                    rigidity,
-                    actuator_stiffness,
-                    free_motions,
-                    partial(self.model, points, halvings + 1),
+                lambda level: InfluenceShapes(
+                    model(level), points, rigidity, actuator_stiffness, free_motions, partial(model, level + 1)
                 ),
                 self.tolerance,
-                self.gain,
+                gain,
             )
         shapes.plate = self
         return shapes
@@ -242,10 +238,9 @@ class Plate(GradedPlate):
         if not (np.isfinite(loads).all() and np.isfinite(pressure)):
             raise ValueError("Input forces and pressure of deflection must be finite; got some that are not")
         rigidity = self.section.rigidity
+        model, gain = self.refinement(points)
         return refined(
-            lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
-            self.tolerance,
-            self.gain,
+            lambda level: Deflection(model(level), points, loads, float(pressure), rigidity), self.tolerance, gain
         )
 
     def pressure(self, load: float) -> Deflection:

@@ -50,7 +50,7 @@ def choose_modes(
     tell: takes how much is done, and of how much.
     Raises ValueError when a mode without damping resonates.
     """
-    xy = shapes.model.mesh.points
+    xy = shapes.functions.space.samples * shapes.size
     xy = xy[:: max(len(xy) // MAX_POINTS, 1)]
     times = np.asarray(end * (np.arange(1, SAMPLES + 1) * GOLDEN % 1.0))
     static = shapes.values(xy)

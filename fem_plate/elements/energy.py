@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_plate.anisotropic import AnisotropicSection
-from fem_plate.elements.argyris import monomials
+from fem_plate.elements.argyris import polynomials
 from fem_plate.elements.forms import triangle_quadrature
 from fem_plate.elements.space import QUADRATURE
 from fem_plate.sections import Field, PlateSection, Section, VaryingSection, values_at
@@ -107,7 +107,7 @@ class PlateEnergy:
     def warn_of_jumps(self, table: FloatArray) -> None:
         """Warn where no polynomial follows the form in a cell.
 
-        table: (n, 21), monomials at the points of a cell; those of each cell come in succession.
+        table: (n, 21), polynomials at the points of a cell; those of each cell come in succession.
         """
         cells = self._at_points.reshape(-1, len(table), JET * JET)
         scale = np.abs(cells).max(axis=(0, 1))
@@ -154,7 +154,7 @@ def plate_energy(
     energy = PlateEnergy(section, foundation, tension, tuple(forms), inside.reshape(-1, 2), mesh.size)
     energy.check()
     if isinstance(section, VaryingSection) or callable(foundation) or forms:
-        energy.warn_of_jumps(monomials(*xy.T))
+        energy.warn_of_jumps(polynomials(*xy.T))
     return energy
 
 

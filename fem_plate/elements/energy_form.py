@@ -21,7 +21,7 @@ from scipy.sparse import csc_matrix
 
 from fem_plate.anisotropic import MEAN
 from fem_plate.elements import forms
-from fem_plate.elements.argyris import monomials
+from fem_plate.elements.argyris import polynomials
 from fem_plate.elements.energy import GRADIENT, HESSIAN, PlateEnergy
 from fem_plate.elements.infinite import InfinitePlate
 from fem_plate.elements.space import QUADRATURE, PlateSpace
@@ -119,10 +119,10 @@ class EnergyForm:
         xy, _ = forms.triangle_quadrature(QUADRATURE)
         triangles = space.triangles
         inside = triangles.centre[triangle, None] + np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy)
-        fit = np.linalg.pinv(monomials(*xy.T))  # (21, n)
+        fit = np.linalg.pinv(polynomials(*xy.T))  # (21, n)
         own = np.einsum("jn,knab->kjab", fit, self.energy.at(inside), optimize=True)
         u, v = np.moveaxis(triangles.reference(space.rim.points, triangle), 2, 0)
-        slopes = np.stack([monomials(u, v, 1, 0), monomials(u, v, 0, 1)])  # (2, k, n, 21)
+        slopes = np.stack([polynomials(u, v, 1, 0), polynomials(u, v, 0, 1)])  # (2, k, n, 21)
         slopes = np.einsum("krd,rknj->dknj", triangles.inverse[triangle], slopes)
         along_x, along_y = np.einsum("dknj,kjab->dknab", slopes, own, optimize=True)
         return self.energy.at(space.rim.points), along_x, along_y

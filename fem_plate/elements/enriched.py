@@ -108,12 +108,8 @@ class EnrichedSpace(PlateSpace):
         large penalties would hide it.
         """
         elements = self._solve_elements(self.load(self._law, self._tension) @ traces)
-        left, right = self.couplings(self._tension)
-        tables = self.traces(self._law)
-        local = super().element_dofs(elements)[self.dofs][self.rim.triangle]  # (k, 21, functions)
-        given = traces.reshape(*tables.shape[:3], -1)
-        loads = np.einsum("kncd,dknf->cknf", left, given - tables @ local)
-        loads += np.einsum("kncd,dknf->cknf", right - left, given)
+        local = super().element_dofs(elements)[self.dofs][self.rim.triangle]
+        loads = self.misfit(self.traces(self._law), self.couplings(self._tension), traces, local)
         with_elements, _ = self._energies
         load = np.einsum("ckne,cknf->ef", self._remainders.traces, loads, optimize=True) - with_elements.T @ elements
         return np.concatenate([elements, self._shares(load)])

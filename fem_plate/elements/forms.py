@@ -29,9 +29,11 @@ The rim is its true curve: only there does a curved clamped plate have no slope.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
-from fem_plate.elements.argyris import DERIVATIVES, FUNCTIONS, REFERENCE, Triangles, chain_rule, monomials
+from fem_plate.elements.argyris import Triangles, chain_rule, reference
 from fem_plate.elements.rim import RimQuadrature, unit_gauss
 from fem_plate.types import FloatArray
 
@@ -53,46 +55,41 @@ def triangle_quadrature(count: int) -> tuple[FloatArray, FloatArray]:
     return xy, np.outer(x * w, w).reshape(-1)
 
 
-def _reference_matrices() -> tuple[FloatArray, FloatArray, FloatArray]:
-    """int h_a h_b of the reference functions' second derivatives, symmetrised (6, 21, 21); likewise of the first
-    (3, 21, 21); int v q (21, 21)."""
-    xy, weights = triangle_quadrature(7)
-    x, y = xy.T
-    second = np.stack([monomials(x, y, *d) @ REFERENCE for d in DERIVATIVES[2]])
-    value = monomials(x, y) @ REFERENCE
-    first = np.stack([monomials(x, y, *d) @ REFERENCE for d in DERIVATIVES[1]])
-    curvature = np.einsum("n,anj,bnk->abjk", weights, second, second)
-    slopes = np.einsum("n,anj,bnk->abjk", weights, first, first)
+@lru_cache
+def _reference_matrices(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """int h_a h_b of the reference functions' second derivatives, symmetrised (6, n, n); likewise of the first
+    (3, n, n); int v q (n, n)."""
+    xy, weights = triangle_quadrature(degree + 2)
+    value, first, second = (reference(degree).derivatives(xy[:, 0], xy[:, 1], order) for order in range(3))
+    curvature = np.einsum("n,naj,nbk->abjk", weights, second, second, optimize=True)
+    slopes = np.einsum("n,naj,nbk->abjk", weights, first, first, optimize=True)
     return (
         np.stack([curvature[a, b] if a == b else curvature[a, b] + curvature[b, a] for a, b in PAIRS]),
         np.stack([slopes[0, 0], slopes[0, 1] + slopes[1, 0], slopes[1, 1]]),
-        np.einsum("n,nj,nk->jk", weights, value, value),
+        np.einsum("n,naj,nak->jk", weights, value, value, optimize=True),
     )
 
 
-REFERENCE_BENDING, REFERENCE_STRETCHING, REFERENCE_MASS = _reference_matrices()
-
-
 def bending(triangles: Triangles, law: FloatArray) -> FloatArray:
-    """int M(v):H(q) on straight-sided triangles, (m, 21, 21)."""
+    """int M(v):H(q) on straight-sided triangles, (m, n, n)."""
     chain = chain_rule(triangles.inverse, 2)
     law = chain.transpose(0, 2, 1) @ law @ chain * triangles.determinant[:, None, None]
     pairs = np.stack([law[:, a, b] for a, b in PAIRS], axis=1)
-    return _to_unknowns(triangles, (pairs @ REFERENCE_BENDING.reshape(6, -1)).reshape(-1, FUNCTIONS, FUNCTIONS))
+    return _to_unknowns(triangles, np.tensordot(pairs, _reference_matrices(triangles.functions.degree)[0], axes=1))
 
 
 def stretching(triangles: Triangles) -> FloatArray:
-    """int grad v.grad q on straight-sided triangles, (m, 21, 21)."""
+    """int grad v.grad q on straight-sided triangles, (m, n, n)."""
     inverse = triangles.inverse
     law = inverse @ inverse.transpose(0, 2, 1) * triangles.determinant[:, None, None]
     pairs = np.stack([law[:, 0, 0], law[:, 0, 1], law[:, 1, 1]], axis=1)
-    matrices = pairs @ REFERENCE_STRETCHING.reshape(3, -1)
-    return _to_unknowns(triangles, matrices.reshape(-1, FUNCTIONS, FUNCTIONS))
+    return _to_unknowns(triangles, np.tensordot(pairs, _reference_matrices(triangles.functions.degree)[1], axes=1))
 
 
 def mass(triangles: Triangles) -> FloatArray:
-    """int v q on straight-sided triangles, (m, 21, 21)."""
-    return _to_unknowns(triangles, triangles.determinant[:, None, None] * REFERENCE_MASS)
+    """int v q on straight-sided triangles, (m, n, n)."""
+    own = _reference_matrices(triangles.functions.degree)[2]
+    return _to_unknowns(triangles, triangles.determinant[:, None, None] * own)
 
 
 def _to_unknowns(triangles: Triangles, matrices: FloatArray) -> FloatArray:
@@ -100,18 +97,18 @@ def _to_unknowns(triangles: Triangles, matrices: FloatArray) -> FloatArray:
 
 
 def bending_at(hessian: FloatArray, weights: FloatArray, law: FloatArray) -> FloatArray:
-    """int M(v):H(q) by quadrature: second derivatives (3, k, n, 21) and weights (k, n) give (k, 21, 21)."""
+    """int M(v):H(q) by quadrature: second derivatives (3, k, n, i) and weights (k, n) give (k, i, i)."""
     moments = np.einsum("ab,bknj->aknj", law, hessian)  # M(v)
     return np.einsum("kn,aknj,aknl->kjl", weights, moments, hessian, optimize=True)
 
 
 def stretching_at(gradient: FloatArray, weights: FloatArray) -> FloatArray:
-    """int grad v.grad q by quadrature: gradients (2, k, n, 21) and weights (k, n) give (k, 21, 21)."""
+    """int grad v.grad q by quadrature: gradients (2, k, n, i) and weights (k, n) give (k, i, i)."""
     return np.einsum("kn,aknj,aknl->kjl", weights, gradient, gradient, optimize=True)
 
 
 def mass_at(value: FloatArray, weights: FloatArray) -> FloatArray:
-    """int v q by quadrature: values (k, n, 21) and weights (k, n) give (k, 21, 21)."""
+    """int v q by quadrature: values (k, n, i) and weights (k, n) give (k, i, i)."""
     return np.einsum("kn,knj,knl->kjl", weights, value, value, optimize=True)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fem_plate.elements.argyris import DEGREE
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
 from fem_plate.types import FloatArray
 from meshes import PlateMesh, areas
@@ -21,6 +22,8 @@ MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
 # What halving the cells is sure to divide the error of w by: without layers (observed: 2^5.5 and more), with cells at
 # the rim of up to COARSE_LAYER widths of a layer, and with larger ones.
 GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 2.0**5, 8.0, 2.0, 6.0
+# Without corners w is off by about ERROR (RATE h)^(degree + 1) of its largest value, h the cells over the half width.
+ERROR, RATE = 100.0, 0.28
 MIN_CELL = 1e-6  # of the plate's size, at corners on the plate's own cells
 FINER, LEAST_CELL = 64.0, 1e-8  # what halving the cells divides that by, down to where rounding is more than accuracy
 
@@ -56,6 +59,7 @@ class MeshGrading:
     layer: float = np.inf  # m, over which a tension's boundary layer decays
     at_layer: float = np.inf  # m, of the cells there
     least: float = MIN_CELL  # of the size, of the cells at corners
+    degree: int = DEGREE  # of the elements
 
     @staticmethod
     def of(mesh: PlateMesh, tension: float = 0.0) -> MeshGrading:
@@ -83,6 +87,10 @@ class MeshGrading:
             return GAIN
         return LAYER_GAIN if self.at_layer <= COARSE_LAYER * self.layer else COARSE_GAIN
 
+    def error(self, degree: int) -> float:
+        """About how far off w is, relative to its largest value, of a plate of one law without corners or tension."""
+        return float(ERROR * (RATE * self.cell / self.half_width) ** (degree + 1))
+
     def halved(self, times: int = 1) -> MeshGrading:
         """The fineness of cells halved so many times."""
         least = max(MIN_CELL / FINER**times, LEAST_CELL) if times else self.least
@@ -90,7 +98,8 @@ class MeshGrading:
 
     def at_corner(self, corner: SingularCorner) -> tuple[float, bool]:
         """The size [m] of the cells at a corner, and whether they are as small as is good for its error."""
-        needed = (corner.error * (self.cell / self.size) ** 6) ** (1 / (2 * corner.exponent))
+        others = (self.cell / self.size) ** 6 * self.error(self.degree) / self.error(DEGREE)
+        needed = (corner.error * others) ** (1 / (2 * corner.exponent))
         return min(self.size * max(needed, self.least), corner.largest), needed >= self.least
 
 

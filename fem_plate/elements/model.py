@@ -13,6 +13,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, infinite_plate
+from fem_plate.elements.argyris import DEGREE
+from fem_plate.elements.condensed import Condensed
 from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy
 from fem_plate.elements.energy_form import EnergyForm
@@ -29,6 +31,7 @@ from meshes import PlateMesh
 CHUNK = 128  # forces solved for at a time, to bound memory
 FREE = 1e-10  # of the largest energy of a rigid motion: those with less are free
 EPSILON = float(np.finfo(float).eps)
+ROUNDING = 3e-20  # of w over the square of the number of unknowns, at degrees above five, as measured
 
 
 class PlateModel:
@@ -39,6 +42,8 @@ class PlateModel:
     tension: 1/m^2, over the rigidity too, of a plate of one law; 0 where a boundary is free.
     wedges: corners with functions of their own, of an isotropic plate.
     rim_points: (k, 2) m, on free boundaries, where forces load the elements.
+    degree: of the elements; above five of a plate of one law, without tension, that its supports hold, and without
+    corners or points of the kinds above.
     """
 
     def __init__(
@@ -50,8 +55,9 @@ class PlateModel:
         tension: float = 0.0,
         wedges: Sequence[Wedge] = (),
         rim_points: FloatArray | None = None,
+        degree: int = DEGREE,
     ) -> None:
-        self.mesh = mesh
+        self.mesh, self.degree = mesh, degree
         self.tension = tension * mesh.size**2  # dimensionless
         self.form: EnergyForm | None = None
         rows = list(free_corners)
@@ -67,8 +73,13 @@ class PlateModel:
             functions = corner_functions(wedges, mesh.size)
             self.space = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
         else:
-            self.space = PlateSpace(mesh, supports, rows)
+            self.space = PlateSpace(mesh, supports, rows, degree)
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))
+
+    @cached_property
+    def condensed(self) -> Condensed | None:
+        """The equations where the degree is above five."""
+        return Condensed(self.space, self.law) if self.degree > DEGREE else None
 
     @property
     def unknowns(self) -> int:
@@ -112,7 +123,7 @@ class PlateModel:
     def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
         if self.form is None:
-            return self.basis(x, held).rounding
+            return self.basis(x, held).rounding + (ROUNDING * self.unknowns**2 if self.degree > DEGREE else 0.0)
         # Second differences of Green's functions lose digits with the square of the distance between actuators.
         apart = np.linalg.norm(x[held][:, None] - x[held], axis=-1) + np.where(np.eye(int(held.sum())), np.inf, 0.0)
         return float(EPSILON / apart.min(initial=1.0) ** 2)
@@ -152,6 +163,8 @@ class PlateModel:
         """
         if isinstance(self.space, EnrichedSpace):
             return self.space.solve
+        if self.condensed is not None:
+            return self.condensed.solve
         pinned = factorised(self.pinned_stiffness)
         if not self.rigid.size:
             return pinned
@@ -178,6 +191,8 @@ class PlateModel:
         """The parts (unknowns, k) that make k known functions, by their traces (t, k), meet the supports."""
         if isinstance(self.space, EnrichedSpace):
             return self.space.follow(-traces)
+        if self.condensed is not None:
+            return self.condensed.follow(-traces)
         return self.solve(-(self._load @ traces))
 
     def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:

@@ -28,40 +28,27 @@ class Relative(NamedTuple):
     planes: IntArray  # the unknowns of the mesh that count from a plane
 
 
-def relative(triangles: Triangles, points: IntArray, edges: IntArray, corners: Sequence[int], count: int) -> Relative:
+def relative(triangles: Triangles, dofs: IntArray, corners: Sequence[int], places: FloatArray, count: int) -> Relative:
     """The relative unknowns around corners.
 
-    points: (m, 3), rows of each triangle's corners.  edges: (m, 3), the unknowns of their edges.
-    corners: rows of points.  count: number of unknowns; point i has 6 i and the five after it.
+    dofs: (m, n), the unknowns of each triangle.  corners: rows of points, of which i has the unknowns 6 i and the five
+    after it.  places: (c, 2), of these.  count: number of unknowns.
     """
-    at = np.zeros((points.max() + 1, 2))
-    at[points] = triangles.points
-    places = at[list(corners)]
     apart = np.linalg.norm(places[:, None] - places, axis=-1) + np.where(np.eye(len(places)), np.inf, 0.0)
-    inside = np.zeros(len(points), dtype=bool)
+    inside = np.zeros(len(dofs), dtype=bool)
     rows, columns, data, planes = [], [], [], []
-
-    def add(row: IntArray, column: int, value: FloatArray | float) -> None:
-        rows.append(row)
-        columns.append(np.full(len(row), column))
-        data.append(np.broadcast_to(value, len(row)))
-
     for corner, place, nearest in zip(corners, places, apart.min(axis=1, initial=np.inf), strict=True):
         reach = min(REACH, NEXT * nearest)
         around = (np.linalg.norm(triangles.points - place, axis=2) < reach).all(axis=1)
         inside |= around
-        of_point = np.setdiff1d(points[around], [corner])
-        first = np.flatnonzero(around[:, None].repeat(3, 1))
-        of_edge, which = np.unique(edges[around].reshape(-1), return_index=True)
-        normal = triangles.normals.reshape(-1, 2)[first[which]]
-        dx, dy = (at[of_point] - place).T
-        add(6 * of_point, 6 * corner, 1.0)
-        for k, along in enumerate((dx, dy)):
-            slope = 6 * corner + 1 + k
-            add(6 * of_point, slope, along)
-            add(6 * of_point + 1 + k, slope, 1.0)
-            add(of_edge, slope, normal[:, k])
-        planes.append(np.concatenate([6 * of_point, 6 * of_point + 1, 6 * of_point + 2, of_edge]))
+        own, first = np.unique(dofs[around], return_index=True)
+        plane = triangles.linear[around].reshape(-1, 3)[first]  # of 1, x and y,
+        plane[:, 1:] -= plane[:, :1] * place  # counted from the corner
+        counts = plane.any(axis=1) & (own // 6 != corner)
+        planes.append(own[counts])
+        rows.append(own[counts].repeat(3))
+        columns.append(np.tile(6 * corner + np.arange(3), counts.sum()))
+        data.append(plane[counts].ravel())
     flat = [np.concatenate(parts) for parts in (data, rows, columns)]
     shift = coo_matrix((flat[0], (flat[1], flat[2])), shape=(count, count)).tocsr()
     own = np.ones(count)

@@ -45,8 +45,9 @@ def prescribed(support: str, normal: FloatArray) -> tuple[FloatArray, FloatArray
     return tangent[..., :, None] * tangent[..., None, :], np.ones(normal.shape[:-1])
 
 
-# A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only.
-RIM_POINTS = 8
+# A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only, and
+# penalties this share of the rim's cells, at degree five. Traces grow with the square of the degree.
+RIM_POINTS, QUINTIC = 8, 5
 BULGE = 1e-14  # of the plate's size: less between chord and rim is rounding
 
 
@@ -59,7 +60,7 @@ class RimQuadrature(NamedTuple):
     normal: FloatArray  # (k, n, 2), outward
     T: FloatArray  # (k, n, 2, 2), what the support prescribes of the gradient
     c: FloatArray  # (k, n), and of the value
-    h: FloatArray  # (k,), the length of the edge, or less where its cell is flat
+    h: FloatArray  # (k,), the length of the edge, or less where its cell is flat or its degree above five
     twist: FloatArray  # (k, n, 2), t at the end of a free edge at a held one, -t at its start, 0 elsewhere
 
 
@@ -71,9 +72,11 @@ class Slivers(NamedTuple):
     weights: FloatArray  # (k, n)
 
 
-def rim_quadrature(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[RimQuadrature, Slivers]:
+def rim_quadrature(
+    mesh: PlateMesh, supports: Mapping[str, str], degree: int = QUINTIC
+) -> tuple[RimQuadrature, Slivers]:
     """Quadrature on the rim of a mesh and on what its triangles miss of the plate, both dimensionless."""
-    gauss, weights = unit_gauss(RIM_POINTS)
+    gauss, weights = unit_gauss(RIM_POINTS + degree - QUINTIC)
     s = np.concatenate([[0.0], gauss, [1.0]])  # the ends have no weight, but carry `twist`
     edges = np.concatenate(list(mesh.boundaries.values()))
     triangle = _owners(mesh, edges)
@@ -98,14 +101,14 @@ def rim_quadrature(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[RimQua
         * np.abs(areas(mesh.points / mesh.size, mesh.triangles[triangle]))
         / np.linalg.norm(chords[:, 1] - chords[:, 0], axis=1)
     )
-    h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height)
+    h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height) * (QUINTIC / degree) ** 2
     rim = RimQuadrature(triangle, points, length, normal, T, c, h, twist)
     return rim, _slivers(triangle, chords, points[:, 1:-1], tangents[:, 1:-1])
 
 
 def _slivers(triangle: IntArray, chords: FloatArray, points: FloatArray, tangents: FloatArray) -> Slivers:
     """Quadrature between chords (k, 2, 2) and the rim's Gauss points (k, n, 2) with tangents (k, n, 2)."""
-    gauss, weights = unit_gauss(RIM_POINTS)
+    gauss, weights = unit_gauss(points.shape[1])
     start, along = chords[:, 0, None], (chords[:, 1] - chords[:, 0])[:, None]
     chord = start + gauss[:, None] * along
     bulge, growth = points - chord, tangents - along
@@ -113,8 +116,8 @@ def _slivers(triangle: IntArray, chords: FloatArray, points: FloatArray, tangent
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
     across = gauss[:, None, None]
     area = cross(bulge, along[curved, None] + across * growth)
-    inside = (chord + across * bulge).reshape(len(bulge), RIM_POINTS**2, 2)
-    return Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2))
+    inside = (chord + across * bulge).reshape(len(bulge), len(gauss) ** 2, 2)
+    return Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(inside.shape[:2]))
 
 
 def rigid_motions(rim: RimQuadrature) -> FloatArray:

@@ -1,9 +1,11 @@
-"""The Argyris triangle (Argyris, Fried and Scharpf, 1968): duality, C1 continuity, degree five."""
+"""The Argyris triangle (Argyris, Fried and Scharpf, 1968): duality, C1 continuity, degree five and more."""
+
+from math import factorial
 
 import numpy as np
 import pytest
 
-from fem_plate.elements.argyris import DERIVATIVES, EDGES, EXPONENTS, Triangles, monomials
+from fem_plate.elements.argyris import DERIVATIVES, EDGES, Triangles, exponents, polynomials
 from fem_plate.elements.space import PlateSpace
 from meshes import disc, polygon
 
@@ -11,12 +13,14 @@ from meshes import disc, polygon
 @pytest.fixture(scope="module", params=["disc", "crooked"])
 def space(request):
     mesh = disc(1.0, 1 / 3) if request.param == "disc" else polygon([(-1, -1), (0.9, -0.6), (0.4, 1), (-0.8, 0.3)], 0.4)
-    return PlateSpace(mesh, dict.fromkeys(mesh.boundaries, "clamped"))
+    space = PlateSpace(mesh, dict.fromkeys(mesh.boundaries, "clamped"))
+    space.mesh = mesh
+    return space
 
 
 @pytest.fixture(scope="module")
 def scattered():
-    """Triangles of any shape, size and place, counter-clockwise, none of them a sliver."""
+    """Triangles of any shape, size and place, counter-clockwise, none of them a sliver, of a degree."""
     rng = np.random.default_rng(8)
     points = rng.uniform(-1, 1, (400, 3, 2)) * 10.0 ** rng.uniform(-2, 0, (400, 1, 1)) + rng.uniform(-1, 1, (400, 1, 2))
     sides = np.roll(points, -1, axis=1) - points
@@ -25,7 +29,7 @@ def scattered():
     good = np.abs(area) > 0.2 * (sides**2).sum(axis=2).max(axis=1)
     points = points[good].reshape(-1, 2)
     row = np.random.default_rng(9).permutation(len(points))  # so that edges run either way
-    return Triangles(points[np.argsort(row)], row.reshape(-1, 3))
+    return lambda degree=5: Triangles(points[np.argsort(row)], row.reshape(-1, 3), degree)
 
 
 def unknowns_on(triangles, function):
@@ -44,6 +48,18 @@ def inside(triangles, count, seed=0):
     return share @ triangles.points
 
 
+def derived(coefficients, x, y, dx, dy):
+    """A derivative of the sum of coefficients[i, j] x^i y^j."""
+    polynomial = np.polynomial.polynomial
+    return polynomial.polyval2d(x, y, polynomial.polyder(polynomial.polyder(coefficients, dx, axis=0), dy, axis=1))
+
+
+def quintics(triangles):
+    """Which unknowns are those of degree five."""
+    functions = triangles.functions
+    return [*range(18), *(18 + functions.more + functions.on_edge * np.arange(3))]
+
+
 def every(triangles):
     return np.arange(len(triangles.points))
 
@@ -54,7 +70,7 @@ def on_triangles(space, u, points, triangle, order):
 
 
 def test_each_basis_function_has_one_unknown_1_and_the_others_0(scattered):
-    rows = []
+    scattered, rows = scattered(), []
     for corner in range(3):
         at = scattered.points[:, [corner]]
         for order in range(3):
@@ -70,14 +86,19 @@ def test_each_basis_function_has_one_unknown_1_and_the_others_0(scattered):
     assert np.abs(found - np.eye(21)).max() < 2e-10
 
 
+@pytest.mark.parametrize("degree", [5, 6, 8, 10])
 @pytest.mark.parametrize("order, bound", [(0, 1e-13), (1, 3e-12), (2, 1e-10), (3, 3e-9)])
-def test_a_quintic_is_reproduced_with_all_derivatives(scattered, order, bound):
-    coefficients = np.random.default_rng(4).normal(size=len(EXPONENTS))
+def test_a_quintic_is_reproduced_with_all_derivatives(scattered, degree, order, bound):
+    """At a higher degree too, where it has the unknowns of degree five and no more."""
+    coefficients, scattered = np.random.default_rng(4).normal(size=(6, 6)), scattered(degree)
+    coefficients *= np.add.outer(range(6), range(6)) <= 5
 
     def quintic(x, y, dx, dy):
-        return monomials(x, y, dx, dy) @ coefficients
+        return derived(coefficients, x, y, dx, dy)
 
-    u, points = unknowns_on(scattered, quintic), inside(scattered, 7)
+    of_quintic = unknowns_on(scattered, quintic)
+    u, points = np.zeros((len(of_quintic), scattered.functions.count)), inside(scattered, 7)
+    u[:, quintics(scattered)] = of_quintic
     found = np.einsum("dtnk,tk->dtn", scattered.derivatives(points, every(scattered), order), u)
     size = np.sqrt(scattered.determinant)[:, None]
     for values, d in zip(found, DERIVATIVES[order], strict=True):
@@ -85,8 +106,34 @@ def test_a_quintic_is_reproduced_with_all_derivatives(scattered, order, bound):
         assert (error * np.minimum(size, 1) ** order).max() < bound
 
 
-def test_value_and_gradient_are_continuous_across_interior_edges(space):
+@pytest.mark.parametrize("degree", [6, 7, 8, 9, 10])
+def test_every_polynomial_of_the_degree_is_a_sum_of_functions(scattered, degree):
+    """It has the unknowns that fit its values, and these give its second derivatives."""
+    triangles = scattered(degree)
+    rng = np.random.default_rng(degree)
+    centre, size = triangles.centre[:, None], np.sqrt(triangles.determinant)[:, None, None]
+    coefficients = rng.normal(size=(degree + 1, degree + 1))
+    coefficients *= np.add.outer(range(degree + 1), range(degree + 1)) <= degree
+    at = inside(triangles, 4 * triangles.functions.count, seed=1)
+    table = triangles.derivatives(at, every(triangles), 0)[0]
+    scale = np.abs(table).max(axis=1, keepdims=True)
+    values = derived(coefficients, *np.moveaxis((at - centre) / size, 2, 0), 0, 0)
+    u = np.stack([np.linalg.lstsq(a, b)[0] for a, b in zip(table / scale, values, strict=True)]) / scale[:, 0]
+    points = inside(triangles, 5)
+    found = np.einsum("dtnk,tk->dtn", triangles.derivatives(points, every(triangles), 2), u) * size[..., 0] ** 2
+    for got, d in zip(found, DERIVATIVES[2], strict=True):
+        assert np.abs(got - derived(coefficients, *np.moveaxis((points - centre) / size, 2, 0), *d)).max() < 1e-7
+
+
+@pytest.mark.parametrize("degree", [5, 6, 7, 8, 9, 10])
+def test_value_and_gradient_are_continuous_across_interior_edges(space, degree):
+    space = PlateSpace(space.mesh, dict.fromkeys(space.mesh.boundaries, "clamped"), degree=degree)
     u = np.random.default_rng(3).normal(size=space.unknowns)
+    # Functions of equal size, which their unknowns of moments do not give.
+    for triangle, dofs in enumerate(space.dofs):
+        at = np.random.default_rng(0).dirichlet(np.ones(3), 30) @ space.triangles.points[triangle]
+        largest = np.abs(space.triangles.derivatives(at[None], np.array([triangle]), 0)[0, 0]).max(axis=0)
+        u[dofs] = np.sign(u[dofs]) / np.maximum(largest, 1.0)
     (start, end), (left, right) = interior_edges(space)
     points = start[:, None] + np.linspace(0, 1, 9)[:, None] * (end - start)[:, None]
     jumps = [
@@ -101,7 +148,8 @@ def test_value_and_gradient_are_continuous_across_interior_edges(space):
 
 def interior_edges(space):
     """The ends ((k, 2), (k, 2)) of the edges between two triangles, and these triangles (2, k)."""
-    edge = space.dofs[:, 18:]
+    functions = space.triangles.functions
+    edge = space.dofs[:, 18 : 18 + 3 * functions.on_edge : functions.on_edge]
     order = np.argsort(edge.ravel(), kind="stable")
     numbers = edge.ravel()[order]
     pair = np.flatnonzero(numbers[1:] == numbers[:-1])
@@ -112,16 +160,21 @@ def interior_edges(space):
     return (points[at, ends[:, 0]], points[at, ends[:, 1]]), (triangle[pair], triangle[pair + 1])
 
 
-def test_monomials_are_those_of_numpy_with_their_derivatives():
-    polynomial = np.polynomial.polynomial
-    x, y = np.random.default_rng(5).normal(size=(2, 6))
-    for column, (i, j) in enumerate(EXPONENTS):
-        table = np.zeros((6, 6))
-        table[i, j] = 1.0
+@pytest.mark.parametrize("degree", [5, 8, 10])
+def test_polynomials_are_bernsteins_with_their_derivatives(degree):
+    x, y = np.random.default_rng(5).uniform(-1 / 3, 1 / 3, (2, 6))
+    polynomial = np.polynomial.Polynomial
+    for column, (i, j, k) in enumerate(exponents(degree).tolist()):
+        # (1 - s - t)^i s^j t^k multiplied out, with s = x + 1/3 and t = y + 1/3.
+        table = np.zeros((degree + 1, degree + 1))
+        for a in range(i + 1):
+            of_s = (polynomial([1, -1]) ** (i - a)).coef * factorial(i) / factorial(a) / factorial(i - a) * (-1.0) ** a
+            table[j : j + len(of_s), k + a] += of_s
+        table *= factorial(degree) / factorial(i) / factorial(j) / factorial(k)
         for dx, dy in [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (1, 2), (3, 0)]:
-            derived = polynomial.polyder(polynomial.polyder(table, dx, axis=0), dy, axis=1)
-            expected = polynomial.polyval2d(x, y, derived)
-            assert monomials(x, y, dx, dy)[:, column] == pytest.approx(expected, rel=1e-13, abs=1e-13)
+            expected = derived(table, x + 1 / 3, y + 1 / 3, dx, dy)
+            scale = float(degree) ** (dx + dy)
+            assert polynomials(x, y, dx, dy, degree)[:, column] == pytest.approx(expected, rel=1e-9, abs=1e-10 * scale)
 
 
 def test_each_point_is_evaluated_on_the_triangle_that_holds_it(space):

@@ -7,7 +7,7 @@ from skfem import Basis, BilinearForm, ElementTriArgyris, MeshTri
 from skfem.helpers import dd, ddot, trace
 
 from fem_plate.elements.argyris import DERIVATIVES, EDGES
-from fem_plate.elements.assembly import LOCAL_ENTITY, WITHIN_ENTITY, sum_up
+from fem_plate.elements.assembly import numbered, sum_up
 from fem_plate.elements.space import PlateSpace
 from fem_plate.sections import bending_law
 from meshes import PlateMesh, annulus, disc, ellipse, polygon, rectangle
@@ -21,7 +21,8 @@ def test_blocks_sum_up_to_what_triplets_do(seed, monkeypatch):
     of_edges = points + np.array([rng.choice(edges - 2, 3, replace=False) for _ in range(m)])  # two are never used
     first = np.concatenate([6 * np.arange(points), 6 * points + np.arange(edges + 1)])
     entities, matrices = np.concatenate([of_points, of_edges], axis=1), rng.normal(size=(m, 21, 21))
-    dofs = first[entities][:, LOCAL_ENTITY] + WITHIN_ENTITY
+    local, within = numbered(entities, first)
+    dofs = first[entities][:, local] + within
     rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
     expected = coo_matrix((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(first[-1],) * 2).toarray()
     whole = sum_up(matrices, entities, first)

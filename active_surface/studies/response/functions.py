@@ -20,7 +20,7 @@ from fem_plate import Excitation, ExcitedModes, InfluenceShapes
 ComplexArray = NDArray[np.complex128]
 
 STILL = 1e-6  # of a shape: points that move less stand still
-TOLERANCE = 1e-4  # of the largest of each curve: what more modes may change
+TOLERANCE = 3e-5  # of the largest of each curve: what more modes may change
 
 
 def frequency_response(
