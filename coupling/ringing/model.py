@@ -114,7 +114,7 @@ class RingingModel(StretchModel):
     def _lifts(self) -> FloatArray:
         """How high a unit of each drive lifts the plate at most, (N,)."""
         functions = self.shapes.functions
-        values = functions.values(functions.space.points)[:, : len(self.large.points)]
+        values = functions.values(functions.space.samples)[:, : len(self.large.points)]
         return np.abs(values).max(axis=0)
 
     @property
@@ -172,7 +172,7 @@ def _shares(shapes: HeldShapes, chosen: ChosenModes, lifted: FloatArray, rung: F
 
     lifted, rung: accelerations (k, N) and (k, n) of drives and modes, m/s^2, or N/s^2 of forces.
     """
-    points = shapes.model.space.points
+    points = shapes.model.space.samples
     points = points[:: max(len(points) // MAX_POINTS, 1)]
     values, fixed = chosen.modes.functions.values(points), lifted @ shapes.functions.values(points).T
     largest = np.abs(fixed + rung @ values.T).max() or 1.0
@@ -183,5 +183,5 @@ def _shares(shapes: HeldShapes, chosen: ChosenModes, lifted: FloatArray, rung: F
 def _heights(model: StretchModel) -> float:
     """The plate's largest deflection at rest [m], about: that of the linear shapes."""
     functions = model.shapes.functions
-    values = functions.values(functions.space.points)[:, : model.heights.shape[1]]
+    values = functions.values(functions.space.samples)[:, : model.heights.shape[1]]
     return float(np.abs(model.heights @ values.T).max())

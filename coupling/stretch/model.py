@@ -84,7 +84,7 @@ class StretchModel:
     def _weights(self) -> tuple[FloatArray, FloatArray]:
         """How high each correction is for a metre of its coefficient, and how far each in-plane motion goes."""
         shapes = self.shapes
-        points = shapes.functions.space.points * shapes.size
+        points = shapes.functions.space.samples * shapes.size
         heights = np.abs(shapes.values(points))[:, len(self.large.points) :].max(axis=0)
         return heights, np.abs(shapes.in_plane_values(points)).max(axis=(0, 2))
 

@@ -79,7 +79,7 @@ class PressureShape:
     def of(shapes: InfluenceShapes, pressure: float) -> PressureShape:
         """That of a pressure other than 0 [Pa], on the cells of the plate's influence shapes."""
         functions = shapes.under_pressure(pressure)
-        highest = float(np.abs(functions.values(functions.space.points)).max())
+        highest = float(np.abs(functions.values(functions.space.samples)).max())
         return PressureShape(functions.weighted(np.array([1 / highest])), _constant(highest))
 
 
