@@ -104,14 +104,14 @@ class GradedPlate:
         return level, min(gain / SPARE, GAIN)
 
     def _degrees(self, points: FloatArray) -> Sequence[int]:
-        """The degrees that elements go through: five alone where what they follow is not smooth.
+        """The degrees that elements go through: five alone without a tolerance, or where what they follow is not smooth.
 
         The second of them is about what meets the tolerance.
         """
-        if not self._smooth or self.mesh.on_rim(points).any():
+        if self.tolerance is None or not self._smooth or self.mesh.on_rim(points).any():
             return [DEGREE]
         first = DEGREE
-        while self.tolerance is not None and first < LAST_FIRST and self.grading.error(first) > GAIN * self.tolerance:
+        while first < LAST_FIRST and self.grading.error(first) > GAIN * self.tolerance:
             first += 1
         return range(first, HIGHEST + 1, STEP)
 
