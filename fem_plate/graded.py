@@ -104,7 +104,7 @@ class GradedPlate:
         return level, min(gain / SPARE, GAIN)
 
     def _degrees(self, points: FloatArray) -> Sequence[int]:
-        """The degrees that elements go through: five alone without a tolerance, or where what they follow is not smooth.
+        """The degrees that elements go through: five alone without a tolerance, or of what is not smooth.
 
         The second of them is about what meets the tolerance.
         """
