@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.transforms import ScaledTranslation
@@ -119,13 +118,12 @@ def _draw_column(
     strip.set_xlim(span[0] * unit.per_si, span[1] * unit.per_si)
     if not first:
         strip.set_title(f"Around {portrait.decisive * unit.per_si:.4g} {unit.name}, {portrait.why}", fontsize=10)
-    lost = [[(event.time * unit.per_si, y) for y in (0, 1)] for event in portrait.events if event.kind in LOSSES]
+    lost = {event.kind: event.time for event in portrait.events if event.kind in LOSSES}  # the last of each kind
     panels = [figure.add_subplot(place) for place in places[1:]]
     for panel, some in zip(panels, curves, strict=True):
         keys += draw_over_time(panel, portrait.rows, some, unit, span, portrait.cycles, (first, last))
-        across = panel.get_xaxis_transform()
-        marked = LineCollection(lost, colors="black", linewidths=1.0, linestyles="--", transform=across)
-        panel.add_collection(marked, autolim=False)
+        for time in lost.values():
+            panel.axvline(time * unit.per_si, color="black", linewidth=1.0, linestyle="--")
         panel.tick_params(labelbottom=panel is panels[-1])
     _align_labels(panels)
     panels[-1].set_xlabel(f"time [{unit.name}]")
