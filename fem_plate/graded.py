@@ -101,7 +101,7 @@ class GradedPlate:
         if len(degrees) == 1:
             return level, self.gain
         gain = self.grading.error(degrees[0]) / self.grading.error(degrees[1])
-        return level, min(gain / SPARE, GAIN)
+        return level, gain / SPARE
 
     def _degrees(self, points: FloatArray) -> Sequence[int]:
         """The degrees that elements go through: five alone without a tolerance, or of what is not smooth.

@@ -49,7 +49,7 @@ def turning():
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_a_part_comes_to_its_target_with_its_heading_and_a_run_of_its_case_says_the_same(turning):
-    settings = Settings(tolerance=2e-8, scatter=1, paths=200, cycles=(1, 2))
+    settings = Settings(tolerance=2e-8, scatter=1, paths=600, cycles=(1, 2))
     found = aim(Task(turning, TARGET, settings, heading=HEADING))
     path = run_case(found.case).trajectory
     way, left = path.position[-1] - TARGET, path.heading[-1] - HEADING
