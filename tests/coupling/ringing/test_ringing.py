@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from coupling.ringing import make_ringing_model
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import make_model
-from coupling.vibration import always_running, make_vibration_model, motion_of
+from coupling.vibration import always_running, choice, make_vibration_model, motion_of
 from fem_plate import Plate, PlateSection, backbone
 from meshes import disc
 from particle import Drive
@@ -83,7 +83,9 @@ def test_frequency_rises_with_the_amplitude_along_the_backbone():
 
 @pytest.mark.slow
 @pytest.mark.compiled
-def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
+def test_small_strokes_are_those_of_a_plate_that_does_not_stretch(monkeypatch):
+    for left_out in ("TOLERANCE", "DROPPED"):  # modes that only one of the two leaves out are no difference in theory
+        monkeypatch.setattr(choice, left_out, 0.1 * getattr(choice, left_out))
     stroke, frequency = 1e-4 * THICKNESS, 20e3
     plate, drives = model(stroke, 0.02, frequency), [Drive(stroke, frequency)]
     found = plate.corrections(drives, 2 / frequency)
