@@ -12,6 +12,7 @@ from particle.drives.pieces import (
     find_piece,
     next_breakpoint,
     quintic_end,
+    shift_quintic,
 )
 from particle.drives.points import QuinticDrive, quintic_drives
 from particle.drives.quintics import begun_at

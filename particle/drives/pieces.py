@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from particle.jit import device_no_arrays, inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined, jit_no_arrays, spliced
 from particle.types import BoolArray, FloatArray, IntArray
 
 ORDER = 6  # coefficients of a quintic
@@ -69,22 +69,24 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
 
     At a breakpoint it is the piece that begins there.
     """
-    find_piece(table, i, time, unit, out)
+    find_piece(table, i, time, time, unit, out)
 
 
 @device_no_arrays
-def find_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> tuple[float, int]:
-    """The same; also returns the passes that drive i has behind it, and its segment, NO_SEGMENT: it holds."""
+def find_piece(
+    table: DriveTable, i: int, within: float, time: float, unit: float, out: FloatArray
+) -> tuple[float, int]:
+    """The same of the piece that holds at `within` [s]; returns passes behind it, its segment or NO_SEGMENT: it holds."""
     for k in range(ORDER):
         out[k] = 0.0
-    if time < table.delay[i]:
+    if within < table.delay[i]:
         out[0] = table.coefficients[table.first[i], 0]
         return 0.0, NO_SEGMENT
-    if time >= _end(table, i):
+    if within >= _end(table, i):
         for k in range(ORDER):
             out[0] += table.coefficients[table.first[i + 1] - 1, k]
         return 0.0, NO_SEGMENT
-    passes, segment = _place(table, i, time)
+    passes, segment = _place(table, i, within)
     expand_piece(table, i, passes, segment, time, unit, out)
     return passes, segment
 
@@ -117,7 +119,7 @@ def _is_alike(table: DriveTable, i: int, other: int) -> bool:
     return True
 
 
-@device_no_arrays
+@spliced
 def expand_piece(
     table: DriveTable, i: int, passes: float, segment: int, time: float, unit: float, out: FloatArray
 ) -> None:
@@ -125,17 +127,20 @@ def expand_piece(
     since = time
     if math.isfinite(table.span[i]):
         since = (time - _origin(table, i)) - table.span[i] * passes
-    # Taylor's shift of the polynomial to `time`, by repeated Horner.
     shift = (since - table.start[segment]) / table.scale[segment]
-    for k in range(ORDER):
-        out[k] = table.coefficients[segment, k]
-    for k in range(ORDER - 1):
-        for j in range(ORDER - 2, k - 1, -1):
-            out[j] += shift * out[j + 1]
-    factor = 1.0
-    for k in range(ORDER):
-        out[k] *= factor
-        factor *= unit / table.scale[segment]
+    shift_quintic(table.coefficients[segment], shift, unit / table.scale[segment], out)
+
+
+@spliced
+def shift_quintic(c: FloatArray, shift: float, ratio: float, out: FloatArray) -> None:
+    """A quintic c (6,) of s as one of (s - shift) / ratio, into `out`, which may be c: Taylor's shift, by Horner."""
+    c_1, c_2, c_3, c_4, c_5, s, power = c[1], c[2], c[3], c[4], c[5], shift, ratio * ratio
+    out[0] = ((((c_5 * s + c_4) * s + c_3) * s + c_2) * s + c_1) * s + c[0]
+    out[1] = ((((5 * c_5 * s + 4 * c_4) * s + 3 * c_3) * s + 2 * c_2) * s + c_1) * ratio
+    out[2] = (((10 * c_5 * s + 6 * c_4) * s + 3 * c_3) * s + c_2) * power
+    out[3] = ((10 * c_5 * s + 4 * c_4) * s + c_3) * (power * ratio)
+    out[4] = (5 * c_5 * s + c_4) * (power * power)
+    out[5] = c_5 * (power * power * ratio)
 
 
 @device_no_arrays
@@ -182,7 +187,7 @@ def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     return float(_origin(table, i) + (table.span[i] * passes + table.start[segment]))
 
 
-@device_no_arrays
+@spliced
 def _origin(table: DriveTable, i: int) -> float:
     """When [s] the first pass of drive i begins, after its lead."""
     return float(table.delay[i] - table.start[table.first[i]])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from particle.drives import DriveTable, drive_piece, quintic_end
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, spliced
 from particle.surface.local import Frame, LocalSurface
 from particle.surface.record import Surface
 
@@ -28,7 +28,7 @@ def allow_bridges(local: LocalSurface, velocity_error: float, acceleration_error
     frame.velocity_error, frame.acceleration_error = velocity_error, acceleration_error
 
 
-@device_no_arrays
+@spliced
 def drive_of(surface: Surface, local: LocalSurface, i: int) -> int:
     """The drive that is i-th in the cell; those of shapes in the plane and the base's two follow the cell's."""
     frame: Frame = local.frame[0]
@@ -38,13 +38,13 @@ def drive_of(surface: Surface, local: LocalSurface, i: int) -> int:
     return int(surface.cells.drive[surface.cells.cell[frame.cell].first_drive + i])
 
 
-@device_no_arrays
+@spliced
 def shapes_in_cell(frame: Frame) -> int:
     """How many drives of shapes count in the cell."""
     return int(frame.drives - frame.in_plane - frame.base_drives)
 
 
-@device_no_arrays
+@spliced
 def find_jump(surface: Surface, local: LocalSurface, i: int) -> None:
     """By how much the third derivative of what the i-th drive does in this cell jumps."""
     frame: Frame = local.frame[0]
@@ -105,7 +105,7 @@ def _breakpoint_rate(drives: DriveTable, i: int) -> float:
     return float((drives.loop[i, 1] - drives.loop[i, 0]) / drives.span[i])
 
 
-@device_no_arrays
+@spliced
 def is_bridged(local: LocalSurface, i: int) -> bool:
     """Whether the i-th drive has a breakpoint within the span."""
     frame: Frame = local.frame[0]
@@ -114,7 +114,7 @@ def is_bridged(local: LocalSurface, i: int) -> bool:
     return bool(clock.until < frame.end - clock.slack and long_enough)
 
 
-@device_no_arrays
+@spliced
 def bridge(surface: Surface, local: LocalSurface, i: int) -> None:
     """Replace the piece of the i-th drive from frame.time on by a bridge to frame.end, if it needs one."""
     if not is_bridged(local, i):

@@ -16,8 +16,10 @@ from particle.drives import (
     drive_breakpoint,
     expand_piece,
     find_piece,
+    shift_quintic,
 )
-from particle.jit import device_no_arrays
+from particle.jit import device_no_arrays, spliced
+from particle.lanes import LANES, load, nought, store
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT, Cell
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
@@ -63,13 +65,6 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     for j in range(frame.logarithms):
         source = surface.cells.near[entered.first_near + j]
         local.sources[j, 0], local.sources[j, 1] = surface.sources[source, 0], surface.sources[source, 1]
-    for k in range(ORDER):
-        for m in range(frame.monomials + frame.logarithms):
-            local.smooth[k, m] = 0.0
-        local.base[k, 0] = local.base[k, 1] = local.base[k, 2] = 0.0
-        if frame.in_plane > 0:
-            for m in range(2 * frame.plane_monomials):
-                local.plane[k, m] = 0.0
     for i in range(frame.drives):
         _find_piece(surface, local, i)
         find_jump(surface, local, i)
@@ -77,6 +72,14 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     find_end(surface, local, end)
     for i in range(frame.drives):
         bridge(surface, local, i)
+    count, width, first = entered.drives, frame.monomials + frame.logarithms, entered.first_row
+    _sum_rows(local.smooth, surface.cells.rows[first : first + count * width], width, local.pieces[:count])
+    if frame.in_plane > 0:
+        moved, width, first = local.pieces[count : count + frame.in_plane], 2 * frame.plane_monomials, entered.first_plane
+        _sum_rows(local.plane, surface.cells.plane_rows[first : first + len(moved) * width], width, moved)
+    for k in range(ORDER):
+        local.base[k, 0] = local.base[k, 1] = local.base[k, 2] = 0.0
+    for i in range(count + frame.in_plane, frame.drives):
         _add(surface, local, i, 1.0)
 
 
@@ -118,7 +121,7 @@ def _has_passed(clock: Clock, time: float) -> bool:
     return bool(clock.until <= time + clock.slack)
 
 
-@device_no_arrays
+@spliced
 def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     """The quintic of the i-th drive, from frame.time to its next breakpoint."""
     frame: Frame = local.frame[0]
@@ -128,18 +131,15 @@ def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
         # Corrections of a plate that stretches have common breakpoints, which are searched once.
         before = local.clock[i - 1]
         if before.since == time and before.segment != NO_SEGMENT:
-            ahead, segment = 0.5 * min(before.until - time, unit), before.segment + table.first[drive]
-            segment -= table.first[drive - 1]
-            expand_piece(table, drive, before.passes, segment, time + ahead, unit, piece)
-            _shift_one(piece, -ahead / unit)
+            segment = before.segment + table.first[drive] - table.first[drive - 1]
+            expand_piece(table, drive, before.passes, segment, time, unit, piece)
             clock.since, clock.until, clock.slack = time, before.until, before.slack
             clock.passes, clock.segment = before.passes, segment
             return
     until = drive_breakpoint(table, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
-    ahead = 0.5 * min(until - time, unit)
-    clock.passes, clock.segment = find_piece(table, drive, time + ahead, unit, piece)
-    _shift_one(piece, -ahead / unit)
+    within = time + 0.5 * min(until - time, unit)
+    clock.passes, clock.segment = find_piece(table, drive, within, time, unit, piece)
     clock.since, clock.until = time, until
     clock.slack = breakpoint_slack(table, drive, until) if math.isfinite(until) else 0.0
 
@@ -149,12 +149,12 @@ def _take_out(surface: Surface, local: LocalSurface, i: int) -> None:
     """Move the quintic of the i-th drive on to frame.time, and take its shape out."""
     frame: Frame = local.frame[0]
     clock = local.clock[i]
-    _shift_one(local.pieces[i], (frame.time - clock.since) / frame.unit)
+    shift_quintic(local.pieces[i], (frame.time - clock.since) / frame.unit, 1.0, local.pieces[i])
     clock.since = frame.time
     _add(surface, local, i, -1.0)
 
 
-@device_no_arrays
+@spliced
 def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
     """Add the quintic of the i-th drive times its shape."""
     frame: Frame = local.frame[0]
@@ -183,6 +183,33 @@ def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: F
                 total[m] += row[m] * c
 
 
+@spliced
+def _sum_rows(out: FloatArray, rows: FloatArray, width: int, pieces: FloatArray) -> None:
+    """The sum of quintics (n, 6) times shapes, rows (n width,), into the first columns of `out` (6, ...)."""
+    whole = width - width % LANES
+    for m in range(0, whole, LANES):
+        c_0 = c_1 = c_2 = c_3 = c_4 = c_5 = nought(load(rows, m))
+        for i in range(len(pieces)):
+            shape, piece = load(rows, i * width + m), pieces[i]
+            c_0 += shape * piece[0]
+            c_1 += shape * piece[1]
+            c_2 += shape * piece[2]
+            c_3 += shape * piece[3]
+            c_4 += shape * piece[4]
+            c_5 += shape * piece[5]
+        store(out[0], m, c_0)
+        store(out[1], m, c_1)
+        store(out[2], m, c_2)
+        store(out[3], m, c_3)
+        store(out[4], m, c_4)
+        store(out[5], m, c_5)
+    for m in range(whole, width):
+        for k in range(ORDER):
+            out[k, m] = 0.0
+            for i in range(len(pieces)):
+                out[k, m] += rows[i * width + m] * pieces[i, k]
+
+
 @device_no_arrays
 def _shift(c: FloatArray, shift: float, width: int) -> None:
     """Polynomials (6, width) of s as ones of s - shift."""
@@ -191,10 +218,3 @@ def _shift(c: FloatArray, shift: float, width: int) -> None:
             for m in range(width):
                 c[j, m] += shift * c[j + 1, m]
 
-
-@device_no_arrays
-def _shift_one(c: FloatArray, shift: float) -> None:
-    """A polynomial (6, ...) of s as one of s - shift."""
-    for k in range(ORDER - 1):
-        for j in range(ORDER - 2, k - 1, -1):
-            c[j] += shift * c[j + 1]
