@@ -11,6 +11,7 @@ from particle.drives.pieces import (
     expand_piece,
     find_piece,
     next_breakpoint,
+    quintic_at,
     quintic_end,
     shift_quintic,
 )

@@ -54,12 +54,21 @@ def hermite_end(rise: Any, v_0: Any, v_1: Any, a_0: Any, a_1: Any) -> tuple[Any,
 quintic_end = device_no_arrays(hermite_end)  # for kernels, of numbers
 
 
+@spliced
+def quintic_at(c_0: Any, c_1: Any, c_2: Any, c_3: Any, c_4: Any, c_5: Any, s: float) -> tuple[Any, Any, Any]:
+    """c_0 + c_1 s + ... + c_5 s^5 and its two derivatives in s, by Horner; numbers or lanes."""
+    value, first, second = c_5 * s + c_4, c_5, c_5  # the first derivative, and half the second
+    first, value = first * s + value, value * s + c_3
+    second, first, value = second * s + first, first * s + value, value * s + c_2
+    second, first, value = second * s + first, first * s + value, value * s + c_1
+    second, first, value = second * s + first, first * s + value, value * s + c_0
+    return value, first, 2 * second
+
+
 @device_no_arrays
 def evaluate_piece(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     """A quintic c (6,) in s = t / unit, with its first and second derivative in t."""
-    value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
-    first = (((5 * c[5] * s + 4 * c[4]) * s + 3 * c[3]) * s + 2 * c[2]) * s + c[1]
-    second = ((20 * c[5] * s + 12 * c[4]) * s + 6 * c[3]) * s + 2 * c[2]
+    value, first, second = quintic_at(c[0], c[1], c[2], c[3], c[4], c[5], s)
     return value, first / unit, second / (unit * unit)
 
 

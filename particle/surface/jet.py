@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from particle.drives import ORDER
+from particle.drives import ORDER, quintic_at
 from particle.jit import device_no_arrays, spliced
-from particle.lanes import nought
+from particle.lanes import LANES, load, nought, store
 from particle.types import FloatArray
 
 
@@ -37,10 +37,16 @@ class Jet(NamedTuple):
 @device_no_arrays
 def at_time(c: FloatArray, at: FloatArray, end: int, s: float, unit: float) -> None:
     """sum_k c[k, m] s^k and its two derivatives in t = unit s [s] into at[:3, m], m < end."""
-    for m in range(end):
-        at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
-        at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
-        at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
+    per, whole = 1 / unit, end - end % LANES
+    for m in range(0, whole, LANES):
+        c_0, c_1, c_2 = load(c[0], m), load(c[1], m), load(c[2], m)
+        value, first, second = quintic_at(c_0, c_1, c_2, load(c[3], m), load(c[4], m), load(c[5], m), s)
+        store(at[0], m, value)
+        store(at[1], m, first * per)
+        store(at[2], m, second * (per * per))
+    for m in range(whole, end):
+        value, first, second = quintic_at(c[0, m], c[1, m], c[2, m], c[3, m], c[4, m], c[5, m], s)
+        at[0, m], at[1, m], at[2, m] = value, first * per, second * (per * per)
 
 
 @spliced

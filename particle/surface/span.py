@@ -26,6 +26,7 @@ from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial
 from particle.surface.record import Surface
 from particle.types import FloatArray
 
+MANY = 4  # of its drives, one in so many has passed a breakpoint: a cell is then prepared from nothing for less
 MAX_SHIFT = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
 
 
@@ -91,7 +92,7 @@ def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> 
     passed = 0
     for i in range(frame.drives):
         passed += _has_passed(clock[i], time)
-    if 2 * passed > frame.drives or time - frame.begun > MAX_SHIFT * frame.unit:
+    if MANY * passed > frame.drives or time - frame.begun > MAX_SHIFT * frame.unit:
         return False
     shift = (time - frame.time) / frame.unit
     _shift(local.smooth, shift, frame.monomials + frame.logarithms)
@@ -191,12 +192,12 @@ def _sum_rows(out: FloatArray, rows: FloatArray, width: int, pieces: FloatArray)
         c_0 = c_1 = c_2 = c_3 = c_4 = c_5 = nought(load(rows, m))
         for i in range(len(pieces)):
             shape, piece = load(rows, i * width + m), pieces[i]
-            c_0 += shape * piece[0]
-            c_1 += shape * piece[1]
-            c_2 += shape * piece[2]
-            c_3 += shape * piece[3]
-            c_4 += shape * piece[4]
-            c_5 += shape * piece[5]
+            c_0 = c_0 + shape * piece[0]
+            c_1 = c_1 + shape * piece[1]
+            c_2 = c_2 + shape * piece[2]
+            c_3 = c_3 + shape * piece[3]
+            c_4 = c_4 + shape * piece[4]
+            c_5 = c_5 + shape * piece[5]
         store(out[0], m, c_0)
         store(out[1], m, c_1)
         store(out[2], m, c_2)
