@@ -85,7 +85,7 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
 def find_piece(
     table: DriveTable, i: int, within: float, time: float, unit: float, out: FloatArray
 ) -> tuple[float, int]:
-    """The same of the piece that holds at `within` [s]; returns passes behind it, its segment or NO_SEGMENT: it holds."""
+    """The same of the piece at `within` [s]; returns the passes behind it, and its segment or NO_SEGMENT: it holds."""
     for k in range(ORDER):
         out[k] = 0.0
     if within < table.delay[i]:

@@ -76,7 +76,11 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     count, width, first = entered.drives, frame.monomials + frame.logarithms, entered.first_row
     _sum_rows(local.smooth, surface.cells.rows[first : first + count * width], width, local.pieces[:count])
     if frame.in_plane > 0:
-        moved, width, first = local.pieces[count : count + frame.in_plane], 2 * frame.plane_monomials, entered.first_plane
+        moved, width, first = (
+            local.pieces[count : count + frame.in_plane],
+            2 * frame.plane_monomials,
+            entered.first_plane,
+        )
         _sum_rows(local.plane, surface.cells.plane_rows[first : first + len(moved) * width], width, moved)
     for k in range(ORDER):
         local.base[k, 0] = local.base[k, 1] = local.base[k, 2] = 0.0
@@ -218,4 +222,3 @@ def _shift(c: FloatArray, shift: float, width: int) -> None:
         for j in range(ORDER - 2, k - 1, -1):
             for m in range(width):
                 c[j, m] += shift * c[j + 1, m]
-
