@@ -62,7 +62,7 @@ def advance(surface: Surface, request: Request, layer: Layer, face: Face | tuple
         if now.mode == Mode.RESTING:
             share = _leaves_at(request, layer, face, memory, now.h)
             if share < 1.0:
-                # Somewhat beyond, as rounding might else put off the end of contact again and again.
+                # Just beyond: rounding could put off the end of contact again and again.
                 now.h = min(now.h * share + MIN_STEP * request.stroke_time, remaining)
                 if not attempt(surface, request, layer, face, memory, now.h):
                     now.h *= 0.4

@@ -193,7 +193,7 @@ def _sum_rows(out: FloatArray, rows: FloatArray, width: int, pieces: FloatArray)
     """The sum of quintics (n, 6) times shapes, rows (n width,), into the first columns of `out` (6, ...)."""
     whole = width - width % LANES
     for m in range(0, whole, LANES):
-        c_0 = c_1 = c_2 = c_3 = c_4 = c_5 = nought(load(rows, m))
+        c_0 = c_1 = c_2 = c_3 = c_4 = c_5 = nought(load(out[0], m))
         for i in range(len(pieces)):
             shape, piece = load(rows, i * width + m), pieces[i]
             c_0 = c_0 + shape * piece[0]
