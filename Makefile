@@ -21,7 +21,7 @@ ALL_MARCHES := tests/particle tests/physics tests/regression tests/validation/te
 # Only in test-all: tests marked slow, and files that take long as a whole.
 LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py platform_examples.py)
 LONG += $(addprefix test_, ring_example.py rivals.py study_examples.py wheel.py)
-# What is left keeps to its budget.
+# Of what is left, that which takes too large a share is named.
 CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 
 .PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean

@@ -107,6 +107,7 @@ def test_a_run_s_margins_are_those_of_the_local_law():
     assert not any("flat faces" in text for text in warnings(result.summary))
 
 
+@pytest.mark.slow
 def test_a_face_s_run_follows_the_local_law_with_margins_of_its_own():
     face = {"footprint": "rectangle", "sides": ["95 um", "60 um"], "thickness": "0.5 um", "local_contact": True}
     part = {"mass": "2e-9 kg", "position": ["-120 um", "-80 um"], "heading": "90 deg"} | face

@@ -126,7 +126,9 @@ FACES = {
 }
 
 
-@pytest.mark.parametrize("name", FACES)
+@pytest.mark.parametrize(
+    "name", ["disc", *(pytest.param(name, marks=pytest.mark.slow) for name in FACES if name != "disc")]
+)
 def test_a_gap_bears_its_load_and_moments_at_least_potential_and_gives_the_friction_of_its_tractions(name):
     face, contact, generator = FACES[name], KogutEtsion.paper(), np.random.default_rng(5)
     law = LocalContact(contact, face)
@@ -163,6 +165,7 @@ def test_a_gap_bears_its_load_and_moments_at_least_potential_and_gives_the_frict
         assert force / [1, 1, face.reach] == pytest.approx(wrench, abs=3e-3 * limit.sum())
 
 
+@pytest.mark.slow
 def test_a_face_rocks_off_a_hump_where_it_does_not_stiffen_against_a_tilt_any_more(local):
     contact, face = KogutEtsion.paper(), Footprint.rectangle(SIZE, SIZE)
     places, weights = face.rule(40)
