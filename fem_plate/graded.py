@@ -104,12 +104,14 @@ class GradedPlate:
         return level, gain / SPARE
 
     def _degrees(self, points: FloatArray) -> Sequence[int]:
-        """The degrees that elements go through: five alone without a tolerance, or of what is not smooth.
+        """The degrees that elements go through: five alone of what is not smooth.
 
-        The second of them is about what meets the tolerance.
+        The second of them is about what meets the tolerance; without one, it is for the estimate alone.
         """
-        if self.tolerance is None or not self._smooth or self.mesh.on_rim(points).any():
+        if not self._smooth or self.mesh.on_rim(points).any():
             return [DEGREE]
+        if self.tolerance is None:
+            return [DEGREE, DEGREE + 1]
         first = DEGREE
         while first < LAST_FIRST and self.grading.error(first) > GAIN * self.tolerance:
             first += 1

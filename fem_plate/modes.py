@@ -31,7 +31,7 @@ MAX_MODES = 400  # so many responses are enough
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
-FIRST = 1e-7  # of a mode's residual: its square is left in the frequency
+FIRST = 1e-5  # of a mode's residual: its square is left in the frequency
 
 
 @dataclass(frozen=True, eq=False)
