@@ -228,9 +228,10 @@ def _arrays(result: Result, record: CaseRecord) -> dict[str, dict[str, NDArray]]
 
 
 def _older(folder: Path, name: str) -> list[str]:
-    """The names of the parts' files of an older run of this name."""
-    with suppress(ValueError):  # there is none, or what is left of it
-        return part_names(folder / f"{name}.plate.vtkhdf")
+    """The names of the parts' files of an older run of many parts of this name."""
+    if any(folder.glob(f"{name}.*.part.vtkhdf")):
+        with suppress(ValueError):  # there is none, or what is left of it
+            return part_names(folder / f"{name}.plate.vtkhdf")
     return []
 
 
