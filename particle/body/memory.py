@@ -13,6 +13,7 @@ from particle.body.face import Face
 from particle.body.limit import Search
 from particle.events import Row
 from particle.events.mechanics import Counts, Now
+from particle.group import grouped
 from particle.records import Record, new_records
 from particle.surface import LocalSurface, Surface
 from particle.types import FloatArray, IntArray
@@ -43,6 +44,7 @@ class Step(Record):
     gap: Annotated[FloatArray, 3]  # of a local contact as a step begins
 
 
+@grouped
 class Memory(NamedTuple):
     """Scratch memory of a path."""
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from particle.group import grouped
 from particle.jit import device_no_arrays, inlined, jit_no_arrays, spliced
 from particle.types import BoolArray, FloatArray, IntArray
 
@@ -16,6 +17,7 @@ ROUNDING = 4 * np.finfo(float).eps  # of the time: the same holds for breakpoint
 NO_SEGMENT = -1  # of a drive that has not begun, or has ended
 
 
+@grouped
 class DriveTable(NamedTuple):
     """The drives of all actuators, as kernels read them.
 

@@ -11,11 +11,13 @@ from particle.events.mechanics import Counts, Motion, Now, as_numbers
 from particle.events.record import Row
 from particle.events.rest import Rest, new_rest
 from particle.events.tableau import Pairs
+from particle.group import grouped
 from particle.records import new_records
 from particle.surface import LocalSurface, Surface, new_local, prepare
 from particle.types import FloatArray, IntArray
 
 
+@grouped
 class Step(NamedTuple):
     """Scratch memory and result of a step. Names with `_numbers` are the same memory without names."""
 
@@ -42,6 +44,7 @@ def new_step(pairs: Pairs) -> Step:
     )
 
 
+@grouped
 class Memory(NamedTuple):
     """Scratch memory of a path."""
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from particle.events.mechanics import Part
+from particle.group import grouped
 from particle.types import FloatArray
 
 
+@grouped
 class Request(NamedTuple):
     """One path to compute, or a piece of it."""
 

@@ -7,11 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from particle.group import grouped
 from particle.types import FloatArray
 
 LOOSE_TOLERANCE = 1e-6  # tolerances from here on are met most cheaply by the pair of order 5
 
 
+@grouped
 class Tableau(NamedTuple):
     """An embedded pair: coefficients of Dormand and Prince (1980; order 8 by Hairer, Norsett and Wanner, 1993)."""
 
@@ -23,6 +25,7 @@ class Tableau(NamedTuple):
     blend: FloatArray  # (m, stages + 1): a smooth quantity there, from its values at the stages
 
 
+@grouped
 class Pairs(NamedTuple):
     """The pairs that a path uses: for steps as long as the tolerance admits, and for those that a breakpoint ends."""
 

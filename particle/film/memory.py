@@ -12,6 +12,7 @@ from particle.events import Row
 from particle.events.mechanics import Counts, Now
 from particle.film.film import FUNCTIONS
 from particle.film.gap import Gap
+from particle.group import grouped
 from particle.records import Record, new_records
 from particle.surface import LocalSurface, Surface, new_local
 from particle.types import FloatArray, IntArray
@@ -44,6 +45,7 @@ class Step(Record):
     before: float  # s, the last step
 
 
+@grouped
 class Memory(NamedTuple):
     """Scratch memory of a path."""
 

@@ -29,6 +29,7 @@ from particle.events import (
 )
 from particle.fixed.moreau import moreau_step
 from particle.fixed.paper_scheme import paper_step
+from particle.group import grouped
 from particle.jit import device, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.records import new_records
@@ -74,6 +75,7 @@ def step_count(duration: float, time_step: float) -> int:
     return max(1, math.ceil(duration / time_step * (1 - 1e-12)))
 
 
+@grouped
 class FixedMemory(NamedTuple):
     """Scratch memory of a path by fixed steps."""
 

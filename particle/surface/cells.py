@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from particle.group import grouped
 from particle.records import Record, new_records, record_type
 from particle.types import FloatArray, IntArray
 
@@ -53,6 +54,7 @@ class Grid(Record):
     plane_highest: int
 
 
+@grouped
 class Cells(NamedTuple):
     """All cells that are built, as kernels read them. Cells that are translates of each other share their rows."""
 

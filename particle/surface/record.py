@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from particle.drives import DriveTable
+from particle.group import grouped
 from particle.surface.cells import Cells
 from particle.types import FloatArray
 
 BASE = 3  # drives that a base has at most: along x, along y, and its turn about the origin
 
 
+@grouped
 class Surface(NamedTuple):
     """A moving surface as kernels read it: arrays and numbers only."""
 

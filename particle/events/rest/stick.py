@@ -20,6 +20,7 @@ from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
 from particle.events.rest.stick_search import leaves_rest_by_search
 from particle.friction import LOCAL
+from particle.group import grouped
 from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, motion_at
 from particle.types import FloatArray
@@ -27,6 +28,7 @@ from particle.types import FloatArray
 SLACK = 1e-15  # of the largest squared force in the span
 
 
+@grouped
 class Rest(NamedTuple):
     """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
 
