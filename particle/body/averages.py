@@ -66,7 +66,7 @@ def new_under(count: int) -> Under:
     return Under(slots, groups, np.zeros((5, LANES * count)), np.zeros((ROWS, PLACE, LANES)))
 
 
-@device_no_arrays
+@spliced
 def local_of(locals_: LocalSurface, k: int) -> LocalSurface:
     """The k-th of them."""
     return LocalSurface(
