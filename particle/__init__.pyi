@@ -40,6 +40,7 @@ from .interrupt import (
     unbroken as unbroken,
     wait as wait,
 )
+from .group import grouped as grouped
 from .jit import (
     kernel as kernel,
     kernel_device as kernel_device,

@@ -28,12 +28,13 @@ from coupling.stretch import (
     new_state,
 )
 from fem_plate.large_deflection import Forms, ReducedPlate
-from particle import kernel, kernel_device_no_arrays, kernel_inlined
+from particle import grouped, kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
 FloatArray = NDArray[np.float64]
 
 
+@grouped
 class Ringing(NamedTuple):
     """A stretching plate with a modes that ring and n corrections that follow them, under N drives.
 

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_device_no_arrays, kernel_inlined
+from particle import grouped, kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
+
+grouped(Forms)
 
 DEGREES = 2 * ORDER - 1  # coefficients of a quintic's square
 

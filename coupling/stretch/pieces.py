@@ -24,7 +24,7 @@ from coupling.stretch.interval import (
 from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, new_state
 from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_device, kernel_device_no_arrays
+from particle import grouped, kernel, kernel_device, kernel_device_no_arrays
 from particle.drives import ORDER, DriveTable, evaluate_piece, quintic_end
 
 FloatArray = NDArray[np.float64]
@@ -37,6 +37,7 @@ SPARE = 1.03  # how many more pieces than the sixth order asks for
 SAME = 1e-6  # of the largest jump of a drive's velocity or acceleration: a smaller one is none
 
 
+@grouped
 class Walk(NamedTuple):
     """The pieces so far, and what is measured."""
 

@@ -16,7 +16,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from coupling.stretch.interval import Moment, add_rows, clear, new_moment
 from coupling.stretch.newton import FINE, fill_motions, find_equilibrium, new_state
 from fem_plate.large_deflection import Forms, ReducedPlate
-from particle import kernel, kernel_device, kernel_device_no_arrays
+from particle import grouped, kernel, kernel_device, kernel_device_no_arrays
 from particle.drives import ORDER, evaluate_piece
 
 FloatArray = NDArray[np.float64]
@@ -27,6 +27,7 @@ CHECKS = 200  # heights at which the error is measured
 ROOM = 0.02  # of a drive's range: how far beyond it a model is good for, and the grid goes
 
 
+@grouped
 class Response(NamedTuple):
     """Splines over the heights of N drives, as kernels read them; empty rows: there are none."""
 

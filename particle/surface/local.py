@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.group import grouped
 from particle.jit import device_no_arrays, jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells, Grid
@@ -65,7 +64,6 @@ class Clock(Record):
     segment: int  # of the drive, NO_SEGMENT: it holds
 
 
-@grouped
 class LocalSurface(NamedTuple):
     """Scratch memory of one path: all that an evaluation needs, so that little is handed from kernel to kernel."""
 
