@@ -1,6 +1,6 @@
 # make demo: set up and run the main job.   make test: set up, lint and test, in minutes.
 # make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
-# make abuse: fuzz, paths and kills, hours of them.
+# make abuse: fuzz, paths and kills, hours of them.   make budget: make test on an idle machine, failing what takes too long.
 PYTHON ?= python3
 # For pip; .ci/versions has others, and leaves out lint, which depends on its own versions.
 CONSTRAINTS ?= constraints.txt
@@ -21,10 +21,9 @@ ALL_MARCHES := tests/particle tests/physics tests/regression tests/validation/te
 # Only in test-all: tests marked slow, and files that take long as a whole.
 LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py platform_examples.py)
 LONG += $(addprefix test_, ring_example.py rivals.py study_examples.py wheel.py)
-# Of what is left, that which takes too large a share is named.
-CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
+CHOSEN := -m "not slow" $(LONG:%=--ignore-glob='*/%')
 
-.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
+.PHONY: demo test budget test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/transport.toml
@@ -33,6 +32,10 @@ test: .venv/developer
 	@$(MAKE) --no-print-directory -j2 kernels plain PLAIN="$(PLAIN)" COVERAGE="$(COVERAGE)"
 	@echo "== tests with compiled kernels (2 of 2)"
 	$(PYTEST) $(COVERAGE) $(CHOSEN)
+
+# The same tests, each within its budget of processor time; beside other work any of them takes longer.
+budget: CHOSEN += --budget
+budget: test
 
 plain: $(LINT)
 	@echo "== kernels in plain Python (1 of 2)"

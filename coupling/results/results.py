@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Mapping
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
+from glob import escape
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -229,7 +230,7 @@ def _arrays(result: Result, record: CaseRecord) -> dict[str, dict[str, NDArray]]
 
 def _older(folder: Path, name: str) -> list[str]:
     """The names of the parts' files of an older run of many parts of this name."""
-    if any(folder.glob(f"{name}.*.part.vtkhdf")):
+    if any(folder.glob(f"{escape(name)}.*.part.vtkhdf")):
         with suppress(ValueError):  # there is none, or what is left of it
             return part_names(folder / f"{name}.plate.vtkhdf")
     return []

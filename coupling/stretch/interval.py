@@ -18,7 +18,7 @@ from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
 
-grouped(Forms)
+grouped(Forms)  # here, as fem_plate knows no kernels
 
 DEGREES = 2 * ORDER - 1  # coefficients of a quintic's square
 

@@ -1,14 +1,14 @@
-"""Processor time of tests: those beyond the budget of `make test`, and tables of the slowest tests and files.
+"""Processor time of tests: the budget of `make test`, and tables of the tests and files that take the most.
 
 Processor time, of the test's process and of those that it started, says more than the clock where tests run side by
-side. Compiled kernels and fixtures of the session are `aside`. The budget is a share of all tests' time, as seconds
-depend on the processor and on what else it does; it is reported, and fails no test.
+side. What a fixture of a module takes counts for its file; compiled kernels and fixtures of the session are `aside`.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +16,9 @@ from pathlib import Path
 import pytest
 from numba.core import event
 
-TEST, FILE = 0.01, 0.04  # of the time of all tests, that a test and a file may take if they are not marked slow
+TEST, FILE = 2.0, 8.0  # s, that a test and a file may take if they are not marked slow
+TURNS = 2_000_000
+TURNING = 0.04  # s, for a loop of so many turns on the processor that these seconds are of
 KEY = "processor time"
 HEAD = """\
 # The slowest tests
@@ -38,7 +40,7 @@ In this order files are started:
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slowest", type=Path, metavar="FILE", help="write tables of the slowest tests to FILE")
     parser.addoption("--slowest-count", type=int, default=50, metavar="N", help="rows of each table [50]")
-    parser.addoption("--budget", action="store_true", help="name tests and files that take too much processor time")
+    parser.addoption("--budget", action="store_true", help="fail tests and files that take too much processor time")
 
 
 class Aside(event.Listener):
@@ -74,47 +76,65 @@ class Stopwatch:
     def __init__(self, config: pytest.Config):
         self.config = config
         self.last = spent()
+        self.test = 0.0  # s, of the running test alone
+        self.module = 0.0  # s, of the fixtures of modules that are made for it
         self.aside = 0.0
+        self.files: Counter[str] = Counter()  # s, of tests not marked slow
         self.seconds: Counter[str] = Counter()
 
     def pytest_runtest_logstart(self) -> None:
-        self.last = spent()
+        self.last, self.test = spent(), 0.0
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef) -> Iterator[None]:
-        if fixturedef.scope != "session":
-            return (yield)
-        with aside:
-            return (yield)
+        began, before = spent(), self.module
+        if fixturedef.scope == "session":
+            with aside:
+                return (yield)
+        result = yield
+        if fixturedef.scope != "function":
+            self.module = before + spent() - began
+        return result
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_makereport(self):
+    def pytest_runtest_makereport(self, item: pytest.Item):
         report = yield
         now = spent()
-        report.user_properties += [(KEY, now - self.last), ("aside", aside.total - self.aside)]
-        self.last, self.aside = now, aside.total
+        took, self.last = now - self.last, now
+        report.user_properties += [(KEY, took), ("aside", aside.total - self.aside)]
+        self.test += took - self.module
+        self.module, self.aside = 0.0, aside.total
+        if self.config.getoption("budget") and "slow" not in item.keywords:
+            self.spend(report, took)
         return report
+
+    def spend(self, report: pytest.TestReport, took: float) -> None:
+        """Fails a test that takes more than its budget, or with which the file takes more."""
+        file = report.nodeid.split("::")[0]
+        before = self.files[file]
+        self.files[file] += took
+        if report.when != "call" or not report.passed:
+            return
+        if self.test > TEST and self.test > TEST * pace():
+            fail(report, f"{report.nodeid} took {self.test:.1f} s", f"a test may take {TEST:g} s: make it smaller")
+        elif before <= FILE < self.files[file] and self.files[file] > FILE * pace():
+            took, advice = f"{file} took {self.files[file]:.1f} s", "make results once in a fixture, or tests smaller"
+            fail(report, took, f"a file may take {FILE:g} s: {advice}")
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         properties = dict(report.user_properties)
         self.seconds[report.nodeid] += properties.get(KEY, 0.0)
         self.seconds[""] += properties.get("aside", 0.0)
 
-    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        if self.config.getoption("budget"):
-            seconds = Counter(self.seconds)
-            seconds.pop("", None)
-            total, files = seconds.total(), by_file(seconds)
-            for share, times in ((TEST, seconds), (FILE, files)):
-                for name, took in times.most_common():
-                    if took > share * total:
-                        beyond = f"{took / total:.1%} of the processor time of all tests, {share:.0%} at most"
-                        terminalreporter.write_line(f"beyond its budget: {name} took {beyond}")
-
     def pytest_sessionfinish(self) -> None:
         if self.config.getoption("slowest") and not hasattr(self.config, "workerinput"):
             rows = tables(self.seconds, self.config.getoption("slowest_count"))
             self.config.getoption("slowest").write_text(rows, encoding="utf-8")
+
+
+def fail(report: pytest.TestReport, took: str, bound: str) -> None:
+    report.outcome = "failed"
+    report.longrepr = f"{took} of processor time, and {bound}, or mark what is long `slow`, for `make test-all`"
 
 
 def seconds_by_file(path: Path) -> Counter[str]:
@@ -134,16 +154,19 @@ def spent() -> float:
     return (aside.began if aside.depth else clock()) - aside.total
 
 
-def by_file(seconds: Counter[str]) -> Counter[str]:
-    files = Counter[str]()
-    for test, took in seconds.items():
-        files[test.split("::")[0]] += took
-    return files
+def pace() -> float:
+    """How often slower this processor is at the moment than the one that the budget is for; at least 1."""
+    began, total = time.process_time(), 0
+    for turn in range(TURNS):
+        total += turn
+    return max(1.0, (time.process_time() - began) / TURNING)
 
 
 def tables(seconds: Counter[str], count: int) -> str:
     shared = seconds.pop("", 0.0)
-    total, files = seconds.total(), by_file(seconds)
+    total, files = seconds.total(), Counter[str]()
+    for test, took in seconds.items():
+        files[test.split("::")[0]] += took
 
     def rows(of: Counter[str]) -> str:
         return "".join(f"| {took:.1f} | {took / total:.1%} | `{name}` |\n" for name, took in of.most_common(count))
