@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from scipy.optimize import brentq
-
 from coupling.case import Case
 from coupling.drives import travel
 from coupling.part import build_part
@@ -132,6 +130,8 @@ def begins(
 
     inf: nowhere; -inf: it is positive from the start down to the lower end.
     """
+    from scipy.optimize import brentq  # here, because runs do without it
+
     x = start
     positive = excess(x) >= 0
     while x != ends[not positive]:

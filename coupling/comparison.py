@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from common import draw, notebook_html, quantity
 from coupling.case import Difference, differences
@@ -148,6 +147,8 @@ def compare(first: Result | SavedRun, second: Result | SavedRun) -> Comparison:
 
 def _places(rows: Any, times: FloatArray) -> FloatArray:
     """Where a part is (k, 2) [m] at times (k,) [s], by cubics between the rows of its path."""
+    from scipy.interpolate import CubicHermiteSpline  # here, because pictures of one run do without it
+
     known, chosen = np.unique(rows.time, return_index=True)
     if len(known) == 1:  # of a part that is lost at once
         return np.broadcast_to(rows.position[:1], (len(times), 2))

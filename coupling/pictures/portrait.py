@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from common import unit_for
 from coupling.case import Case, PlateCase
@@ -178,6 +177,8 @@ def _box(points: FloatArray) -> FloatArray:
 
 def samples_of(run: SavedRun) -> Samples:
     """All that the files know of the part, with cubics for the places in between."""
+    from scipy.interpolate import CubicHermiteSpline  # here, because the run itself does without it
+
     steps = Samples(
         run.time,
         run.position[:, :2],

@@ -162,7 +162,7 @@ def make_ringing_model(
         together = kept[0]
     else:
         together = with_modes(reduction, lowest, (strokes, swings, corrections), MIN_COUPLING)
-        keep_model(key, together, model.mesh_error)
+        keep_model(key, together, model.heights, model.mesh_error)
     figures = model.heights, model.mesh_error
     return RingingModel(large, together, above, *figures, chosen, damping, steady, amplitudes, float(shares[count]))
 

@@ -125,16 +125,23 @@ def equilibrium_at(plate: ReducedPlate, drives: FloatArray) -> tuple[FloatArray,
     return corrections, motions
 
 
-def training(sets: Sequence[Sequence[AnyDrive]], end: float) -> FloatArray:
-    """Heights (S, N) [m, or N of forces] that several sets of N drives reach up to a time [s]."""
-    count = len(sets[0])
-    if count > FEW:
+def reached(sets: Sequence[Sequence[AnyDrive]], end: float) -> FloatArray:
+    """Where several sets of N drives come up to a time [s]: the ends (2, N) of few, heights (S, N) of more; m, or N."""
+    if len(sets[0]) > FEW:
         times = end * np.linspace(0, 1, max(16, MOMENTS // len(sets)))
         return np.concatenate([stroke_heights(drives, times) for drives in sets])
     bounds = np.array([[reach(drive) for drive in drives] for drives in sets])  # (sets, N, 2)
-    low, high = bounds[:, :, 0].min(axis=0), bounds[:, :, 1].max(axis=0)
+    return np.stack([bounds[:, :, 0].min(axis=0), bounds[:, :, 1].max(axis=0)])
+
+
+def training(found: FloatArray) -> FloatArray:
+    """Heights (S, N) all over what drives reach, as `reached` finds it."""
+    count = found.shape[1]
+    if count > FEW:
+        return found
     from scipy.stats.qmc import Sobol  # here, because it takes a while
 
+    low, high = found
     inside = Sobol(count, scramble=False).random_base2(math.ceil(math.log2(PLACES * count)))
     corners = np.stack(np.meshgrid(*[(0.0, 1.0)] * count, indexing="ij"), axis=-1).reshape(-1, count)
     return np.asarray(low + np.concatenate([corners, inside]) * (high - low))
@@ -151,13 +158,14 @@ def make_model(large: LargeDeflection, sets: Sequence[Sequence[AnyDrive]], end: 
             f"Input theory of Plate must be linear for more than {MAX_STRETCHING} actuators, as a von Karman plate is "
             f"solved for all of them at once; got {len(large.points)} of them"
         )
-    heights = training(sets, end)
-    largest = heights[np.argmax(np.abs(heights).sum(axis=1))]
-    if not largest.any():
+    found = reached(sets, end)
+    if not found.any():
         raise ValueError("Input drives of a plate that stretches must move it; they never do")
-    key = key_of(large, heights, TOLERANCE)
+    key = key_of(large, found, TOLERANCE)
     if (kept := read_model(key, large)) is not None:
-        return StretchModel(large, kept[0], heights, kept[1])
+        return StretchModel(large, *kept)
+    heights = training(found)
+    largest = heights[np.argmax(np.abs(heights).sum(axis=1))]
     report = _Report(tell)
     report.begun()
     discrete, mesh_error = fine_enough(large, largest)
@@ -165,7 +173,7 @@ def make_model(large: LargeDeflection, sets: Sequence[Sequence[AnyDrive]], end: 
         discrete, heights / discrete.units, TOLERANCE, lambda plate, d: equilibrium_at(plate, d)[0], report.solved
     )
     tell(PARTS, PARTS)
-    keep_model(key, reduction, mesh_error)
+    keep_model(key, reduction, heights, mesh_error)
     return StretchModel(large, reduction, heights, mesh_error)
 
 

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline
 
 from coupling.stretch.interval import Moment, add_rows, clear, new_moment
 from coupling.stretch.newton import FINE, fill_motions, find_equilibrium, new_state
@@ -85,6 +84,8 @@ def find_response(plate: ReducedPlate, heights: FloatArray, limits: FloatArray) 
 
 def _fitted(rows: FloatArray, low: FloatArray, high: FloatArray, points: int) -> Response:
     """The splines through values (P^N, n + M) on the grid."""
+    from scipy.interpolate import BSpline, make_interp_spline  # here, because single runs do without it
+
     count, shares = len(low), np.arange(points, dtype=float)
     values = rows.reshape(*[points] * count, -1)
     for axis in range(count):

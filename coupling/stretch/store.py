@@ -33,7 +33,10 @@ BROKEN = (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile
 
 
 def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float, *more: FloatArray) -> str:
-    """A hash of plate, actuators, the heights and what more the model is for, and the sources that make it."""
+    """A hash of plate, actuators, what the model is for and the sources that make it.
+
+    heights: (S, N), or what they follow from.
+    """
     plate, mesh = large.plate, large.plate.mesh
     digest = hashlib.sha256()
     for folder in (Path(fem_plate.__path__[0]), Path(meshes.__path__[0]), Path(__file__).parent):
@@ -57,8 +60,8 @@ def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float, *more:
     return digest.hexdigest()[:32]
 
 
-def read_model(key: str, large: LargeDeflection) -> tuple[Reduction, float] | None:
-    """The reduction kept under a key and its mesh error; None where there is none, or none that can be read."""
+def read_model(key: str, large: LargeDeflection) -> tuple[Reduction, FloatArray, float] | None:
+    """The reduction kept under a key, the heights it is for and its mesh error; None where none can be read."""
     folder = _folder()
     if folder is None:
         return None
@@ -69,17 +72,17 @@ def read_model(key: str, large: LargeDeflection) -> tuple[Reduction, float] | No
         plate = ReducedPlate(arrays["stiffness"], arrays["membrane"], in_plane=arrays["in_plane"])
         level, halvings, solutions, error, mesh_error = (float(arrays[name]) for name in FIGURES)
         linear, corrections = (Columns(arrays[f"{name}_v"], arrays[f"{name}_extra"]) for name in SHAPES)
-        motions = arrays["motions"]
+        motions, heights = arrays["motions"], arrays["heights"]
     except BROKEN:
         return None
     with suppress(OSError):
         os.utime(path)
     discrete = large.discrete(int(level), int(halvings))
-    return Reduction(discrete, plate, linear, corrections, motions, int(solutions), error), mesh_error
+    return Reduction(discrete, plate, linear, corrections, motions, int(solutions), error), heights, mesh_error
 
 
-def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
-    """Keep a reduction, if there is a place that can be written to."""
+def keep_model(key: str, reduction: Reduction, heights: FloatArray, mesh_error: float) -> None:
+    """Keep a reduction and the heights it is for, if there is a place that can be written to."""
     folder = _folder()
     if folder is None:
         return
@@ -88,7 +91,8 @@ def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
     arrays = {"stiffness": plate.stiffness, "membrane": plate.membrane, "in_plane": plate.in_plane}
     for name, shapes in zip(SHAPES, (reduction.linear, reduction.corrections), strict=True):
         arrays |= {f"{name}_v": shapes.v, f"{name}_extra": shapes.extra}
-    arrays |= {"motions": reduction.motions} | {n: np.array(f) for n, f in zip(FIGURES, figures, strict=True)}
+    arrays |= {"motions": reduction.motions, "heights": heights}
+    arrays |= {n: np.array(f) for n, f in zip(FIGURES, figures, strict=True)}
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         with whole_file(folder / f"{key}.npz") as partial, open(partial, "wb") as file:

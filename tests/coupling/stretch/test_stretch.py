@@ -8,7 +8,7 @@ import pytest
 from coupling.case import MAX_STRETCHING
 from coupling.drives import stroke_heights
 from coupling.stretch import Stretch, make_model
-from coupling.stretch.model import training
+from coupling.stretch.model import reached, training
 from coupling.stretch.store import FOLDER
 from fem_plate import Plate, PlateSection
 from meshes import disc
@@ -165,14 +165,14 @@ def test_bars_read_what_is_being_done(model, large, tmp_path, monkeypatch):
 
 
 def test_training_fills_the_box_of_few_drives():
-    heights = training([DRIVES, [Drive(2 * THICKNESS, 300.0, "up-down"), DRIVES[1]]], END)
+    heights = training(reached([DRIVES, [Drive(2 * THICKNESS, 300.0, "up-down"), DRIVES[1]]], END))
     assert heights.min(axis=0) == pytest.approx([0.0, -0.6 * THICKNESS])
     assert heights.max(axis=0) == pytest.approx([2 * THICKNESS, 0.0])
 
 
 def test_training_follows_many_drives():
     drives = [Drive(THICKNESS, 100.0 * (k + 1), "up-down") for k in range(5)]
-    heights = training([drives], END)
+    heights = training(reached([drives], END))
     times = END * np.linspace(0, 1, len(heights))
     assert np.array_equal(heights, stroke_heights(drives, times))
 
