@@ -34,6 +34,7 @@ def cost(cache: Path, *arguments: str) -> tuple[float, str]:
 
     before = spent()
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "ACTIVE_SURFACE_CACHE": str(cache / "plates")}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a later run finds its sources compiled
     done = subprocess.run([sys.executable, *arguments], env=environment, stdout=subprocess.PIPE, text=True, check=True)
     return spent() - before, done.stdout
 

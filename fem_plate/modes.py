@@ -25,7 +25,7 @@ from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.inputs import check_on_plate
 from fem_plate.types import BoolArray, FloatArray
 
-CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
+CELLS = 1_000  # evaluated at a time, to bound memory
 RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved to, out of the way
 MAX_MODES = 400  # so many responses are enough
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
@@ -211,16 +211,13 @@ def _lowest(held_plate: HeldPlate, count: int, residual: float) -> tuple[FloatAr
 
 def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """int q F_i (unknowns, N) of F around points x (N, 2), and int F_i F_j (N, M), F_j around y (M, 2)."""
-    space = model.space
-    (points, weights), triangles = model.masses, space.quadrature_triangles
-    with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(y)))
-    same = x is y
-    for start in range(0, len(points), CHUNK):
-        part = slice(start, start + CHUNK)
-        singular = model.infinite.point_value(points[part], x)
-        weighted = weights[part, None] * singular
-        with_singular += space.point_values(points[part], triangles[part]).T @ weighted
-        of_singular += weighted.T @ (singular if same else model.infinite.point_value(points[part], y))
+    with_singular, of_singular = np.zeros((model.unknowns, len(x))), np.zeros((len(x), len(y)))
+    for triangle, points, weights in model.space.cells(CELLS):
+        places = points.reshape(-1, 2)
+        singular = model.infinite.point_value(places, x)
+        weighted = model.masses(places, weights.ravel())[:, None] * singular
+        with_singular += model.space.load_at(triangle, points, weighted.reshape(*weights.shape, -1))
+        of_singular += weighted.T @ (singular if x is y else model.infinite.point_value(places, y))
     return with_singular, of_singular
 
 

@@ -120,6 +120,12 @@ class EnrichedSpace(PlateSpace):
         border = [self.to_independent(inside[0] + at_rim[0]), inside[1] + at_rim[1]]
         return self._bordered(super().stretching(), np.concatenate(border))
 
+    def load_at(self, triangle: IntArray, points: FloatArray, loads: FloatArray) -> FloatArray:
+        of_elements = super().load_at(triangle, points, loads)
+        of_corners = self.functions.derivatives(points.reshape(-1, 2), 1)[0][0]
+        shares = of_corners.T @ loads.reshape(len(of_corners), -1) - self._lifts.T @ of_elements
+        return np.concatenate([of_elements, shares])
+
     def mass(self) -> csc_matrix:
         (points, weights), triangles = self.quadrature, self.quadrature_triangles
         border = np.zeros((self.unknowns, len(self.functions)))

@@ -107,11 +107,9 @@ class PlateModel:
         """The matrix of int v q, by the mass per area over that of the section for reference."""
         return self.space.mass() if self.form is None else self.form.mass()
 
-    @property
-    def masses(self) -> tuple[FloatArray, FloatArray]:
-        """Points (n, 2) and weights (n,) of integrals over the plate's mass, as of `mass`."""
-        points, weights = self.space.quadrature
-        return points, weights if self.form is None else weights * self.form.energy.relative_thickness(points)
+    def masses(self, points: FloatArray, weights: FloatArray) -> FloatArray:
+        """The weights (n,) at points (n, 2) of integrals over the plate's mass, as of `mass`; weights: by area."""
+        return weights if self.form is None else weights * self.form.energy.relative_thickness(points)
 
     def basis(self, x: FloatArray, held: BoolArray) -> SourceBasis:
         """What to combine forces at x (N, 2) of, where actuators hold the plate.

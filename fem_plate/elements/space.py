@@ -114,6 +114,11 @@ class PlateSpace:
         np.add.at(total, self.dofs[triangle], loads)
         return np.asarray(self.to_independent(total))
 
+    def load_at(self, triangle: IntArray, points: FloatArray, loads: FloatArray) -> FloatArray:
+        """The sum of q times loads (t, n, k) at points (t, n, 2) of triangles (t,), (unknowns, k)."""
+        values = self.triangles.derivatives(points, triangle, 0)[0]
+        return self.assemble_load(values.transpose(0, 2, 1) @ loads, triangle)
+
     def mass(self) -> csc_matrix:
         """The matrix of int v q."""
         matrices = forms.mass(self.triangles)
