@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -20,6 +22,29 @@ CUT = "cut"  # the boundary along which a patch is cut out; it is clamped
 SIDES = {"left": (0, 0), "right": (1, 0), "bottom": (0, 1), "top": (1, 1)}  # row and axis of a box
 
 
+class Turn(NamedTuple):
+    """A patch seen another way round: what runs along axis k, times its sign, runs along `axes[k]` of the patch."""
+
+    axes: list[int]
+    signs: FloatArray  # (2,) of 1 and -1
+
+    @property
+    def is_none(self) -> bool:
+        """Whether the patch is seen as it is."""
+        return self.axes == [0, 1] and bool((self.signs > 0).all())
+
+    def of(self, xy: FloatArray) -> FloatArray:
+        """Points (n, 2) in the patch's coordinates, from those of the one that sees it."""
+        return (xy * self.signs)[:, self.axes]
+
+
+def turns(mirrored: bool, swapped: bool) -> list[Turn]:
+    """How a patch may be seen: as it is, and mirrored, and with its axes swapped."""
+    signs = itertools.product((1.0, -1.0), repeat=2) if mirrored else [(1.0, 1.0)]
+    axes = [[0, 1], [1, 0]] if swapped else [[0, 1]]
+    return [Turn(along, np.array(sign)) for along, sign in itertools.product(axes, signs)]
+
+
 @dataclass(frozen=True, eq=False)
 class Cut:
     """Where a patch lies."""
@@ -30,13 +55,13 @@ class Cut:
     name: bytes  # differs for patches with equal boxes and actuators that are not alike
     sides: Mapping[str, str]  # of a rectangle, the boundary on each side; empty for a part of the plate's mesh
 
-    def seen(self, turn: FloatArray) -> bytes:
-        """The name of a rectangle seen in coordinates that are these times 1 or -1, (2,)."""
-        if (turn > 0).all():
+    def seen(self, turn: Turn) -> bytes:
+        """The name of a rectangle seen another way round."""
+        if turn.is_none:
             return self.name
         left, right, bottom, top = self.name.split(b",")
-        along, across = [left, right][:: int(turn[0])], [bottom, top][:: int(turn[1])]
-        return b",".join([*along, *across])
+        pairs = [[left, right][:: int(turn.signs[0])], [bottom, top][:: int(turn.signs[1])]]
+        return b",".join(name for axis in turn.axes for name in pairs[axis])
 
 
 class Cutter:

@@ -99,12 +99,12 @@ class PatchedShapes(Shapes):
             np.zeros((len(x), width, 2)),
             np.zeros((len(x), width, 2, 2)),
         )
-        for functions, entries, x_patch, scale in self._pieces(x, weights):
+        for functions, entries, x_patch, (axes, scale) in self._pieces(x, weights):
             w, w_grad, w_hess = functions.evaluate(x_patch)  # at actuators the Hessians are infinite
             value[entries] += w
-            gradient[entries] += w_grad * scale
+            gradient[entries] += w_grad[..., axes] * scale
             with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
-                hessian[entries] += w_hess * np.outer(scale, scale)
+                hessian[entries] += w_hess[..., axes, :][..., axes] * np.outer(scale, scale)
         return value, gradient, hessian
 
     def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
@@ -216,18 +216,18 @@ class PatchedShapes(Shapes):
 
     def _pieces(
         self, x: FloatArray, weights: FloatArray | None
-    ) -> Iterator[tuple[PlateFunctions, Any, FloatArray, FloatArray]]:
-        """Yield what each tile adds at x (n, 2): functions, entries to add to, points, and their scales (2,) by x."""
+    ) -> Iterator[tuple[PlateFunctions, Any, FloatArray, tuple[list[int], FloatArray]]]:
+        """Yield what each tile adds at x (n, 2): functions, entries to add to, points, and how derivatives turn."""
         for tile in self.tiles:
             patch = tile.patch
-            scale, core = self.size / patch.size * tile.turn, tile.rows[patch.core]
+            turn, core = (tile.turn.axes, self.size / patch.size * tile.turn.signs), tile.rows[patch.core]
             if weights is not None and not weights[core].any():
                 continue
             x_patch, on_patch = self._within(tile, x * self.size)
             if on_patch.size and weights is None:
-                yield patch.functions, np.ix_(on_patch, core), x_patch[on_patch], scale
+                yield patch.functions, np.ix_(on_patch, core), x_patch[on_patch], turn
             elif on_patch.size and weights is not None:
-                yield patch.functions.weighted(weights[core]), on_patch, x_patch[on_patch], scale
+                yield patch.functions.weighted(weights[core]), on_patch, x_patch[on_patch], turn
 
     def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         rows, values = [np.zeros(0, dtype=np.int64)], [np.zeros((len(xy), 0))]
@@ -248,7 +248,7 @@ class PatchedShapes(Shapes):
     def _within(self, tile: Tile, xy: FloatArray) -> tuple[FloatArray, IntArray]:
         """Points (n, 2) [m] in the dimensionless coordinates of a tile's patch, and the rows of those on it."""
         patch = tile.patch
-        x, box = (xy - tile.cut.origin) * tile.turn / patch.size, patch.box / patch.size
+        x, box = tile.turn.of(xy - tile.cut.origin) / patch.size, patch.box / patch.size
         in_box = np.flatnonzero(((x >= box[0] - SLACK) & (x <= box[1] + SLACK)).all(axis=1))
         return x, in_box[patch.functions.space.holds(x[in_box])] if in_box.size else in_box
 

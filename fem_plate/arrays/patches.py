@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fem_plate.arrays.cutting import Cut, Cutter
+from fem_plate.arrays.cutting import Cut, Cutter, Turn, turns
 from fem_plate.elements import PlateFunctions, PlateModel
 from fem_plate.influence import held_shapes
 from fem_plate.types import BoolArray, FloatArray, IntArray
@@ -56,7 +56,7 @@ class Tile:
     patch: Patch
     cut: Cut
     rows: IntArray
-    turn: FloatArray  # (2,) of 1 and -1: the patch's coordinates over the tile's, which may be its mirror image
+    turn: Turn  # how it sees the patch
 
 
 class ActuatorArray:
@@ -77,9 +77,9 @@ class ActuatorArray:
         self.cutter, self.points, self.actuator_stiffness = cutter, points, actuator_stiffness
         self.rigidity, self.law, self.tension = rigidity, law, tension
         self._tree = cKDTree(points)
-        # How a patch may be seen: as it is, or mirrored where the plate bends alike both ways.
-        both = np.array([[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]])
-        self._turns = both[: 1 if law[1, [0, 2]].any() else 4]
+        mirrored = not law[1, [0, 2]].any()  # where the plate bends alike both ways
+        square = round(cutter.pitch[0] / cutter.pitch[1], PITCH_DIGITS) == 1
+        self._turns = turns(mirrored, square and bool(law[0, 0] == law[2, 2]))
         self._solved: dict[bytes, Patch] = {}
 
     def tiles(self, truncation: float, tell: ProgressCallback) -> list[Tile]:
@@ -136,7 +136,7 @@ class ActuatorArray:
 
     def _tile(self, middle: FloatArray, reach: FloatArray, inside: IntArray) -> Tile:
         cut, rows = self.cut_out(middle, reach)
-        ways = [self._seen(cut, rows, inside, turn) for turn in self._turns if cut.sides or (turn > 0).all()]
+        ways = [self._seen(cut, rows, inside, turn) for turn in self._turns if cut.sides or turn.is_none]
         for (key, turned), turn in zip(ways, self._turns, strict=False):
             if key in self._solved:
                 return Tile(self._solved[key], cut, turned, turn)
@@ -144,11 +144,11 @@ class ActuatorArray:
         self._solved[ways[0][0]] = patch
         return Tile(patch, cut, rows, self._turns[0])
 
-    def _seen(self, cut: Cut, rows: IntArray, inside: IntArray, turn: FloatArray) -> tuple[bytes, IntArray]:
+    def _seen(self, cut: Cut, rows: IntArray, inside: IntArray, turn: Turn) -> tuple[bytes, IntArray]:
         """What a patch is known by, seen one way round, and the rows of its actuators in the order of their places."""
-        places = np.round((self.points[rows] - cut.origin) * turn / self.cutter.pitch, PITCH_DIGITS) + 0.0
+        places = np.round(turn.of(self.points[rows] - cut.origin) / self.cutter.pitch, PITCH_DIGITS) + 0.0
         order = np.lexsort(places.T)
-        box = np.round(np.sort(cut.box * turn, axis=0) / self.cutter.pitch, PITCH_DIGITS) + 0.0
+        box = np.round(np.sort(turn.of(cut.box), axis=0) / self.cutter.pitch, PITCH_DIGITS) + 0.0
         rows = rows[order]
         alike = box, places[order], self.actuator_stiffness[rows], np.isin(rows, inside)
         return cut.seen(turn) + b"".join(array.tobytes() for array in alike), rows

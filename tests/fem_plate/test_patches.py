@@ -59,7 +59,7 @@ def test_tiles_that_look_alike_share_a_patch(shapes):
 def test_tiles_that_mirror_each_other_share_a_patch_whose_fields_are_turned(row, shapes):
     first, last = shapes.tiles[0], shapes.tiles[-1]
     assert first.patch is last.patch and unlike(shapes) <= 3
-    assert (first.turn * last.turn).tolist() == [-1.0, 1.0]
+    assert (first.turn.signs * last.turn.signs).tolist() == [-1.0, 1.0]
     dense, weights = row.influence(lattice(60, 1)), np.random.default_rng(0).uniform(-1, 1, 60)
     for sign in (-1, 1):
         spots = np.random.default_rng(1).uniform([26, -1.5], [30, 1.5], (40, 2)) * PITCH * [sign, 1]
@@ -67,6 +67,17 @@ def test_tiles_that_mirror_each_other_share_a_patch_whose_fields_are_turned(row,
             zip(shapes.evaluate(spots, weights), dense.evaluate(spots, weights), strict=True)
         ):
             assert np.abs(found - truth).max() * PITCH**order < 3e-3 * 3**order
+
+
+def test_tiles_along_two_sides_share_a_patch_whose_fields_are_swapped(section):
+    points, rng = lattice(12, 12), np.random.default_rng(1)
+    shapes = Plate(rectangle(13 * PITCH, 13 * PITCH, PITCH), section).influence(points, truncation=4e-2)
+    assert [1, 0] in [tile.turn.axes for tile in shapes.tiles]
+    spots, weights = rng.uniform(-6, 6, (100, 2)) * PITCH, rng.uniform(-1, 1, (12, 12))
+    value, gradient, hessian = shapes.evaluate(spots, weights.ravel())
+    truth = value, gradient[:, ::-1], hessian[:, ::-1, ::-1]
+    for order, found in enumerate(shapes.evaluate(spots[:, ::-1], weights.T.ravel())):
+        assert np.abs(found - truth[order]).max() * PITCH**order < 1e-9
 
 
 @pytest.mark.slow
