@@ -79,7 +79,7 @@ class ActuatorArray:
         self._tree = cKDTree(points)
         mirrored = not law[1, [0, 2]].any()  # where the plate bends alike both ways
         square = round(cutter.pitch[0] / cutter.pitch[1], PITCH_DIGITS) == 1
-        self._turns = turns(mirrored, square and bool(law[0, 0] == law[2, 2]))
+        self._turns = turns(mirrored, mirrored and square and bool(law[0, 0] == law[2, 2]))
         self._solved: dict[bytes, Patch] = {}
 
     def tiles(self, truncation: float, tell: ProgressCallback) -> list[Tile]:

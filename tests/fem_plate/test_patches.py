@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse import issparse
 
-from fem_plate import PatchedShapes, Plate
+from fem_plate import AnisotropicSection, PatchedShapes, Plate
 from fem_plate.arrays import patched, patches
 from fem_plate.arrays.patches import spacing
 from meshes import disc, polygon, rectangle
@@ -78,6 +78,13 @@ def test_tiles_along_two_sides_share_a_patch_whose_fields_are_swapped(section):
     truth = value, gradient[:, ::-1], hessian[:, ::-1, ::-1]
     for order, found in enumerate(shapes.evaluate(spots[:, ::-1], weights.T.ravel())):
         assert np.abs(found - truth[order]).max() * PITCH**order < 1e-9
+
+
+def test_a_crystal_at_an_angle_has_no_patches_seen_another_way_round():
+    crystal = AnisotropicSection.cubic((165.7e9, 63.9e9, 79.6e9), 1e-6, angle=0.3)
+    assert crystal.law[0, 0] == pytest.approx(crystal.law[2, 2]) and abs(crystal.law[1, 0]) > 0.01
+    shapes = Plate(rectangle(13 * PITCH, 13 * PITCH, PITCH), crystal).influence(lattice(12, 12), truncation=4e-2)
+    assert all(tile.turn.is_none for tile in shapes.tiles)
 
 
 @pytest.mark.slow
