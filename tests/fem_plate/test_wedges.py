@@ -120,6 +120,15 @@ def test_functions_are_evaluated_alike_through_points_and_fields(octagon):
     assert space.laplacians(xy, u[:, None])[:, 0] == pytest.approx(np.trace(hessian[:, 0], axis1=1, axis2=2), rel=1e-9)
 
 
+def test_loads_cell_by_cell_are_those_on_values_at_points(octagon):
+    space, rng = octagon.space, np.random.default_rng(2)
+    for triangle, points, weights in space.cells(1000):  # triangles, and the slivers of a curved rim, here none
+        loads = rng.normal(size=(*weights.shape, 2))
+        summed = space.load_at(triangle, points, loads)
+        values = space.point_values(points.reshape(-1, 2), np.repeat(triangle, weights.shape[1]))
+        assert summed == pytest.approx(values.T @ loads.reshape(-1, 2), abs=1e-11)
+
+
 def test_the_mass_of_corner_functions_is_that_of_their_values(octagon):
     space = octagon.space
     points, weights = space.quadrature
