@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,7 +18,7 @@ from coupling.scene import PlateScene
 from coupling.stretch import Stretch
 from coupling.vibration import PIECES
 from fem_plate import PatchedShapes, Plate, PlateShapes, VaryingSection
-from particle import Trajectory
+from particle import Trajectory, side_by_side
 from particle.friction import Contact
 
 MAX_SLOPE, MAX_STRAIN = 0.2, 0.005  # of the plate, to which the model holds; silicon breaks near twice the strain
@@ -100,10 +101,10 @@ def plate_figures(
     over_thickness = deflection / plate.section.thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
     tipping = tipping_of(case, contact, friction)
-    # Both before the error estimate: the plate keeps the model of its last cells, which they share with the shapes.
-    first = _first_frequency(plate, shapes)
     load = float(np.nanmax(np.abs(contact.normal_force)))
+    # Before the error estimate: the plate keeps the model of its last cells, which it shares with the shapes.
     sag = part_sag(plate, shapes, trajectory, load) if with_sag else np.nan
+    first, _ = side_by_side(partial(_first_frequency, plate, shapes), lambda: shapes.error_estimate)
     driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())

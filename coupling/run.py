@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from warnings import warn
 
@@ -29,7 +29,7 @@ from coupling.results import CaseRecord, Output, SavedRun, record_of, write_resu
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from fem_plate import PlateShapes
-from particle import AnyDrive, Body, Micropart, SurfaceMotion, Trajectory, interruptible
+from particle import AnyDrive, Body, Micropart, SurfaceMotion, Trajectory, interruptible, side_by_side
 from particle.fixed import default_step
 from particle.friction import Contact
 
@@ -121,8 +121,8 @@ def run_over(
         record = record_of(case)
     with progress("Following the part"):
         friction = build_friction(case)
-        trajectory = interruptible(follow_part, case, scene.surface, friction)
-        tighter = interruptible(follow_part, case, scene.surface, friction, True)
+        path = partial(follow_part, case, scene.surface, friction)
+        trajectory, tighter = side_by_side(path, partial(path, True))
     with progress("Checking the model's validity"):
         result = judged(case, scene, trajectory, tighter)
     if output is None or record is None:

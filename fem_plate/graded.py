@@ -137,9 +137,10 @@ class GradedPlate:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
         mesh = self._graded(corners, points, halvings, degree)
         key = mesh.points.tobytes() + rim_points.tobytes() + bytes([degree])
-        if self._last is None or self._last[0] != key:
-            self._last = key, self.model_on(mesh, self.tension, rim_points, degree)
-        return self._last[1]
+        last = self._last  # another thread may exchange it meanwhile
+        if last is None or last[0] != key:
+            last = self._last = key, self.model_on(mesh, self.tension, rim_points, degree)
+        return last[1]
 
     def model_on(
         self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None, degree: int = DEGREE

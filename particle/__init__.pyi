@@ -36,6 +36,7 @@ from .interrupt import (
     Stopped as Stopped,
     interruptible as interruptible,
     is_held_back as is_held_back,
+    side_by_side as side_by_side,
     stoppable as stoppable,
     unbroken as unbroken,
     wait as wait,

@@ -6,6 +6,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 if TYPE_CHECKING:  # every command loads this module, and not all of them numpy
@@ -61,30 +62,41 @@ def wait(ended: Callable[[float], bool]) -> None:
 
 
 def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
-    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
+    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it."""
+    return side_by_side(partial(work, *arguments))[0]
+
+
+def side_by_side(*tasks: Callable[[], Answer]) -> list[Answer]:
+    """What tasks give, each on a thread of its own, so that Ctrl-C ends the wait for them; raises what the first did.
 
     A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
-    A thread that gets no signals does the work itself.
+    A thread that gets no signals does the work itself, task by task.
     """
     if threading.current_thread() is not threading.main_thread():
-        return work(*arguments)
-    results: list[Answer] = []
-    errors: list[BaseException] = []
-    ended = threading.Event()
+        return [task() for task in tasks]
+    answers: dict[int, Answer] = {}
+    errors: dict[int, BaseException] = {}
 
-    def run() -> None:
+    def run(number: int, task: Callable[[], Answer]) -> None:
         try:
-            results.append(work(*arguments))
+            answers[number] = task()
         except BaseException as error:  # raised in the caller below
-            errors.append(error)
-        finally:
-            ended.set()
+            errors[number] = error
 
-    threading.Thread(target=run, daemon=True).start()
-    wait(ended.wait)
-    if errors:
-        raise errors[0]
-    return results[0]
+    threads = [threading.Thread(target=run, args=numbered, daemon=True) for numbered in enumerate(tasks)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        wait(partial(_ends, thread))
+    for _, error in sorted(errors.items()):
+        raise error
+    return [answers[number] for number in range(len(tasks))]
+
+
+def _ends(thread: threading.Thread, timeout: float) -> bool:
+    """Whether a thread ends within so many seconds."""
+    thread.join(timeout)
+    return not thread.is_alive()
 
 
 @contextmanager

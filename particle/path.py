@@ -60,9 +60,8 @@ _under_way: dict[int, tuple[NDArray[Any], float]] = {}  # on each thread: where 
 
 
 def under_way() -> tuple[float, float] | None:
-    """To which time [s] a path is followed that some thread is at, and until when it goes; None: there is none."""
-    paths = list(_under_way.values())
-    return (float(paths[-1][0]["time"][0]), paths[-1][1]) if paths else None
+    """To which time [s] the path is followed that is least far, and until when it goes; None: there is none."""
+    return min(((float(now["time"][0]), until) for now, until in list(_under_way.values())), default=None)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from particle.interrupt import interruptible, unbroken, wait
+from particle.interrupt import interruptible, side_by_side, unbroken, wait
 
 
 class Swallower:
@@ -63,6 +63,26 @@ def test_a_wait_gives_back_what_was_found_or_raised():
     assert interruptible(divmod, 7, 2) == (3, 1)
     with pytest.raises(ZeroDivisionError):
         interruptible(divmod, 7, 0)
+
+
+def test_tasks_run_side_by_side_and_answer_in_their_order():
+    both = threading.Barrier(2, timeout=5)
+    assert side_by_side(lambda: both.wait() * 0 + 1, lambda: both.wait() * 0 + 2) == [1, 2]
+
+
+def test_of_tasks_that_fail_the_first_counts_once_all_have_ended():
+    late = threading.Event()
+
+    def fail_late():
+        time.sleep(0.05)
+        late.set()
+        raise KeyError
+
+    with pytest.raises(KeyError):
+        side_by_side(fail_late, lambda: divmod(7, 0))
+    with pytest.raises(ZeroDivisionError):
+        side_by_side(lambda: divmod(7, 0), fail_late)
+    assert late.is_set()
 
 
 def test_a_wait_on_another_thread_leaves_the_signal_alone():

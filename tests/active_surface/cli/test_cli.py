@@ -24,9 +24,11 @@ LATEST = 600.0  # s after Ctrl-C: a command that has not ended on the busiest ma
 MARCHING = """
 import sys
 import particle.simulation as simulation
-plain = simulation.find_path
+plain, paths = simulation.find_path, []
 def find_path(*arguments):
-    print("marching", flush=True)
+    paths.append(arguments)
+    if len(paths) == 2:  # the run's and the tighter one
+        print("marching", flush=True)
     return plain(*arguments)
 simulation.find_path = find_path
 from active_surface.cli.program import main
