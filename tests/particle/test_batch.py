@@ -94,9 +94,9 @@ def test_samples_have_the_same_bits_whatever_cells_are_built_after_the_path(surf
         assert np.array_equal(one, other)
 
 
-@pytest.mark.parametrize("scheme", ["events", "fixed"])
-def test_a_path_keeps_no_copy_of_the_cells(surface, parts, scheme):
-    path = simulate(surface, parts[0], LAW, 1e-4, tolerance=1e-6, scheme=scheme)
+@pytest.mark.parametrize(("scheme", "step"), [("events", None), ("fixed", 1e-6)])
+def test_a_path_keeps_no_copy_of_the_cells(surface, parts, scheme, step):
+    path = simulate(surface, parts[0], LAW, 1e-4, tolerance=1e-6, scheme=scheme, time_step=step)
     then = weakref.ref(surface.store.cells.roots)
     surface.store.build(np.array([[-0.6, -0.6], [0.6, 0.6]]) * RADIUS)
     assert then() is None and path.at([5e-5]).time[0] == 5e-5
