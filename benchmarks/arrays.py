@@ -49,7 +49,7 @@ def table() -> list[str]:
         answer = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
         found.append([float(word) for word in answer.stdout.split()])
     lines = [
-        "| actuators | time over that of 9 | peak memory | left out of a shape, at most | strokes held to |",
+        "| actuators | time over that of 9 | peak memory | left out of a shape, at most | strokes met to |",
         "|---:|---:|---:|---:|---:|",
     ]
     counts = [rows * columns for rows, columns in LATTICES]

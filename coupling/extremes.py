@@ -17,7 +17,7 @@ from particle import AnyDrive
 FloatArray = NDArray[np.float64]
 
 MOMENTS, ACTUATORS = 16, 16  # that are looked at closely: so many of each
-TOGETHER = 32  # moments summed up for at a time
+TOGETHER = 32  # moments whose slopes are summed up at a time, to bound memory
 ALIKE = 1e-9  # of the largest height: drives this close stand alike
 AROUND = 8  # points on each circle around one
 RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
@@ -87,7 +87,7 @@ def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
 
 
 def _unlike(heights: FloatArray) -> NDArray[np.int64]:
-    """The first of all rows of heights (k, N) [m] that are equal to rounding: cycles repeat themselves."""
+    """Which rows of heights (k, N) [m] no earlier row equals up to rounding: cycles repeat themselves."""
     unit = ALIKE * np.abs(heights).max()
     return np.sort(np.unique(np.round(heights / (unit or 1.0)), axis=0, return_index=True)[1])
 

@@ -27,7 +27,8 @@ LINEAR_ERROR = 0.08
 # The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first
 # frequency: 3.3 f/f1 of strokes up and down at f. The jump of jerk at both ends of a stroke makes it ring so.
 QUASI_STATIC_ERROR = 1.65
-NEAR_RIM = 0.1  # of the plate's half width: farther from the rim, any cells give a sag to three digits
+# Farther from the rim, in half widths of the plate or in its cells, these give a sag to three digits.
+NEAR_RIM, NEAR_CELLS = 0.1, 0.75
 _FIRST: WeakKeyDictionary[PlateShapes, dict[float, float]] = WeakKeyDictionary()  # Hz, by density
 
 
@@ -95,14 +96,13 @@ class PlateFigures:
 def plate_figures(
     case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact, with_sag: bool = True
 ) -> PlateFigures:
-    """The figures of a plate under its drives and a part's path over it; with_sag: else that is nan."""
+    """The figures of a plate under its drives and a part's path over it; with_sag: else without `part_sag`."""
     plate, shapes, drives, surface, stretch = scene.plate, scene.shapes, scene.lifts, scene.surface, scene.stretch
     deflection, slope, strain = largest(scene, case.run.duration)
     over_thickness = deflection / plate.section.thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
     tipping = tipping_of(case, contact, friction)
     load = float(np.nanmax(np.abs(contact.normal_force)))
-    # Before the error estimate: the plate keeps the model of its last cells, which it shares with the shapes.
     sag = part_sag(plate, shapes, trajectory, load) if with_sag else np.nan
     first, _ = side_by_side(partial(_first_frequency, plate, shapes), lambda: shapes.error_estimate)
     driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
@@ -229,11 +229,11 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
         # The part stands on an actuator. A force k there raises the plate like a unit stroke on the spring k.
         spring = float(shapes.springs[below])
         return 0.0 if np.isinf(spring) else float(shapes.own_heights()[below]) / (spring or 1.0) * force
-    gap = shapes.outline.gap
-    near = min(float(gap(shapes.points).min()), NEAR_RIM * plate.grading.half_width)
-    if isinstance(shapes, PatchedShapes) or gap(start)[0] >= near:
+    cells = NEAR_CELLS * plate.grading.cell if plate.tolerance is None else 0.0
+    near = max(NEAR_RIM * plate.grading.half_width, cells)
+    if isinstance(shapes, PatchedShapes) or shapes.outline.gap(start)[0] >= near:
         return shapes.compliance_at(start[0]) * force
-    # As close to the rim as that, cells are small enough for the actuators only.
+    # This close to the rim the shapes' cells are too large for the part.
     springs = np.append(shapes.springs, 0.0)
     meshed = plate if plate.tolerance is None else plate.as_meshed()
     with_part = meshed.influence(np.concatenate([shapes.points, start]), springs)

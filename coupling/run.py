@@ -121,8 +121,12 @@ def run_over(
         record = record_of(case)
     with progress("Following the part"):
         friction = build_friction(case)
-        path = partial(follow_part, case, scene.surface, friction)
-        trajectory, tighter = side_by_side(path, partial(path, True))
+        _ = friction.law  # found once, before both paths ask for it
+        paths = [partial(follow_part, case, scene.surface, friction, tighter) for tighter in (False, True)]
+        if output is not None and output.surface:  # whose cells are in the order in which paths come to them
+            trajectory, tighter = map(interruptible, paths)
+        else:
+            trajectory, tighter = side_by_side(*paths)
     with progress("Checking the model's validity"):
         result = judged(case, scene, trajectory, tighter)
     if output is None or record is None:

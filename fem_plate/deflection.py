@@ -55,7 +55,7 @@ Solution = TypeVar("Solution", bound=Estimated)
 def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: float = GAIN) -> Solution:
     """The solution as fine as the tolerance requires; without one, the coarsest.
 
-    solve: takes the level of fineness.  gain: what a level more divides the error of w by, at least.
+    solve: takes the level of fineness.  gain: what the next level divides the error of w by, at least.
     """
     solution = _at_level(solve, 0)
     if tolerance is None:

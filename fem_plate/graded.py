@@ -35,10 +35,10 @@ from meshes import PlateMesh
 if TYPE_CHECKING:
     from skfem import BilinearForm
 
-# Degrees of refinement: the highest, what one adds to the last, and with which it begins at most. SPARE of what that
-# gains is not counted on.
+# Degrees of refinement: the highest, the step to the next, and the highest to begin with. Of a step's gain one part in
+# SPARE is counted on.
 HIGHEST, STEP, LAST_FIRST, SPARE = 10, 2, 8, 4.0
-MILD = 2.0  # exponents of corners from which on second derivatives are as continuous there as functions'
+MILD = 2.0  # corners of at least this exponent leave second derivatives continuous, as the elements have them
 
 
 class GradedPlate:

@@ -111,7 +111,7 @@ def _held_system(
 
 
 def sums_on(model: PlateModel, coarse: InfluenceShapes, values: FloatArray, weights: FloatArray) -> FloatArray:
-    """What sums of shapes with weights (N, k) change by on a finer mesh, (n, k) at its points.
+    """What sums of shapes with weights (N, k) change by on a finer mesh, (n, k) at its space's samples.
 
     The coarse forces, taken over, leave the actuators slightly off their heights. The coarse shapes bring them back, to
     the product of two errors. So each sum takes one solution, where each shape would take one.

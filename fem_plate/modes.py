@@ -162,7 +162,7 @@ class HeldPlate:
         return np.asarray(direct + self._to_heights.T @ of_raised)
 
     def functions(self, vectors: FloatArray) -> tuple[PlateFunctions, FloatArray]:
-        """The functions of vectors (unknowns, k), each 1 at most over the mesh's points, and what they were (k,)."""
+        """The functions of vectors (unknowns, k), each 1 at most at the space's samples, and what they were (k,)."""
         heights, count = self._to_heights @ vectors, vectors.shape[1]
         whole = PlateFunctions(
             self.model.space,
@@ -202,7 +202,9 @@ def _lowest(held_plate: HeldPlate, count: int, residual: float) -> tuple[FloatAr
         M=mass_operator,
         sigma=0,
         OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
-        v0=np.random.default_rng(0).standard_normal(unknowns),  # the same in each run; of no symmetry of the plate
+        v0=np.random.default_rng(0).standard_normal(
+            unknowns
+        ),  # fixed, so that runs agree; random, so that every mode has a share
         tol=residual,
     )
     order = np.argsort(squares)
@@ -257,7 +259,7 @@ class WithModel(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ExcitedModes:
-    """Modes that N actuators excite, each 1 at most over the mesh's points."""
+    """Modes that N actuators excite, each 1 at most at the space's samples."""
 
     omega: FloatArray  # (n,) rad/s, ascending
     functions: PlateFunctions  # n

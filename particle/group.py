@@ -79,7 +79,7 @@ def _places(builder: ir.IRBuilder, address: ir.Value, *within: int) -> ir.Value:
 
 
 def _loaded(builder: ir.IRBuilder, place: ir.Value) -> ir.Value:
-    """What is at a place and never changes, number by number: of whole structures LLVM forgets that."""
+    """What is at a place and never changes, number by number: LLVM drops that mark from loads of whole structures."""
     of = place.type.pointee
     if isinstance(of, ir.LiteralStructType | ir.ArrayType):
         value = ir.Constant(of, ir.Undefined)

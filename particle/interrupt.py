@@ -67,36 +67,28 @@ def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
 
 
 def side_by_side(*tasks: Callable[[], Answer]) -> list[Answer]:
-    """What tasks give, each on a thread of its own, so that Ctrl-C ends the wait for them; raises what the first did.
+    """What the tasks give, in their order, each found on a thread of its own; Ctrl-C ends the wait.
 
-    A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
-    A thread that gets no signals does the work itself, task by task.
+    Once all have ended, raises the error of the first in that order which failed. A signal that arrives inside a
+    compiled kernel, or while one is compiled, would otherwise be handled late or never. A thread that gets no signals
+    does the work itself, task by task.
     """
     if threading.current_thread() is not threading.main_thread():
         return [task() for task in tasks]
-    answers: dict[int, Answer] = {}
-    errors: dict[int, BaseException] = {}
+    from concurrent import futures  # here, because it loads logging
 
-    def run(number: int, task: Callable[[], Answer]) -> None:
+    found: list[futures.Future[Answer]] = [futures.Future() for _ in tasks]
+
+    def run(task: Callable[[], Answer], future: futures.Future[Answer]) -> None:
         try:
-            answers[number] = task()
+            future.set_result(task())
         except BaseException as error:  # raised in the caller below
-            errors[number] = error
+            future.set_exception(error)
 
-    threads = [threading.Thread(target=run, args=numbered, daemon=True) for numbered in enumerate(tasks)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        wait(partial(_ends, thread))
-    for _, error in sorted(errors.items()):
-        raise error
-    return [answers[number] for number in range(len(tasks))]
-
-
-def _ends(thread: threading.Thread, timeout: float) -> bool:
-    """Whether a thread ends within so many seconds."""
-    thread.join(timeout)
-    return not thread.is_alive()
+    for pair in zip(tasks, found, strict=True):
+        threading.Thread(target=run, args=pair, daemon=True).start()
+    wait(lambda seconds: not futures.wait(found, seconds).not_done)
+    return [future.result() for future in found]
 
 
 @contextmanager

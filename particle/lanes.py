@@ -136,7 +136,7 @@ def _place(context: Any, builder: Any, kind: Any, array: Any, first: Any) -> Any
 @infer_global(load)
 class _Load(AbstractTemplate):  # type: ignore[misc]
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(lanes, args[0], types.intp)
+        return signature(lanes, args[0], types.intp) if args[0].layout == "C" else None
 
 
 @lower_builtin(load, types.Array, types.intp)  # type: ignore[untyped-decorator]
@@ -147,7 +147,7 @@ def _load(context: Any, builder: Any, sig: Any, args: Any) -> Any:
 @infer_global(store)
 class _Store(AbstractTemplate):  # type: ignore[misc]
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(types.none, args[0], types.intp, lanes)
+        return signature(types.none, args[0], types.intp, lanes) if args[0].layout == "C" else None
 
 
 @lower_builtin(store, types.Array, types.intp, lanes)  # type: ignore[untyped-decorator]

@@ -60,7 +60,7 @@ _under_way: dict[int, tuple[NDArray[Any], float]] = {}  # on each thread: where 
 
 
 def under_way() -> tuple[float, float] | None:
-    """To which time [s] the path is followed that is least far, and until when it goes; None: there is none."""
+    """How far [s] the path that lags most has come, and its end [s]; None: none is followed."""
     return min(((float(now["time"][0]), until) for now, until in list(_under_way.values())), default=None)
 
 

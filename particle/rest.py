@@ -22,7 +22,7 @@ MAX_BREAKPOINTS, MAX_MOMENTS = 20_000, 400_000
 BLOCK: Final = 4096  # moments at a time
 TOLERANCE: Final = 1e-8  # for which points a face's surface is averaged over
 CANDIDATES, POINTS, ROUNDS = 8, 17, 7  # a bracket shrinks by 8 in a round
-ROUNDING: Final = 1e-9  # of the largest value: as large, but for rounding
+ROUNDING: Final = 1e-9  # of the largest value: as large, up to rounding
 
 
 class Extreme(NamedTuple):
@@ -137,7 +137,7 @@ def sample_times(surface: SurfaceMotion, begin: float, end: float, per_stroke: i
 
 
 def largest(signal: Callable[[FloatArray], FloatArray], times: FloatArray, values: FloatArray | None = None) -> Extreme:
-    """The largest value of a signal, smooth but for breakpoints, and when first; times (n,) [s] bracket its maxima.
+    """The largest value of a signal, smooth except for breakpoints, and when first; times (n,) [s] bracket its maxima.
 
     values: (n,) of the signal at these, where they are known.
     """

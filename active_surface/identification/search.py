@@ -1,6 +1,6 @@
 """The search for parameters: least squares from many starts, with slopes over ever narrower differences.
 
-A path is a smooth function of its parameters but for jumps, where the part rests once more or once less, and for the
+A path is a smooth function of its parameters except for jumps, where the part rests once more or once less, and for the
 tolerance of the integrator. So slopes begin as differences over 2 % of the bounds, and the points of the differences
 count as trials too.
 """

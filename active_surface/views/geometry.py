@@ -17,7 +17,7 @@ SLIVER = 0.01  # of a cell's area: smaller triangles of a thinned surface are no
 DIGITS = (1, 2, 5)
 DRAWN_HEIGHT = 0.2  # of a length: heights are drawn about so large
 MIN_EXAGGERATION = 1.5  # a smaller one counts as 1
-SLACK = 1e-9  # relative: a number that is round but for rounding errors is round
+SLACK = 1e-9  # relative: a number that is round up to rounding errors is round
 
 
 class Spots(NamedTuple):

@@ -157,7 +157,7 @@ def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
 def read_parts(path: str | os.PathLike[str], may_move: bool = False) -> list[Case]:
     """Read the case file at `path`, a case for each of its parts; raises as `read_case`.
 
-    These cases are alike but for their parts. Each of several has the name of its part, or its number from 0.
+    These cases are alike except for their parts. Each of several has the name of its part, or its number from 0.
     """
     file = parse(path)
     context = UNITS_REQUIRED | {"folder": Path(path).absolute().parent}

@@ -1,4 +1,4 @@
-"""Fits: drives that follow measured motions, smooth but for impacts, and what was found on the way."""
+"""Fits: drives that follow measured motions, smooth except for impacts, and what was found on the way."""
 
 from __future__ import annotations
 

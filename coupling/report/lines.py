@@ -233,7 +233,7 @@ def details(s: Summary) -> list[tuple[str, str]]:
             (
                 "plate",
                 f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
-                f"held at the actuators to {s.hold_residual:.1e}",
+                f"strokes met at the actuators to {s.hold_residual:.1e}",
             ),
             *([("", _stretching(s.stretch_error, s.stretch_solutions or 0))] if s.stretch_error else []),
             *([("", _vibrating(s.vibration))] if s.vibration else []),

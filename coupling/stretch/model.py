@@ -126,7 +126,10 @@ def equilibrium_at(plate: ReducedPlate, drives: FloatArray) -> tuple[FloatArray,
 
 
 def reached(sets: Sequence[Sequence[AnyDrive]], end: float) -> FloatArray:
-    """Where several sets of N drives come up to a time [s]: the ends (2, N) of few, heights (S, N) of more; m, or N."""
+    """The heights that several sets of N drives reach until `end` [s]; m, or N.
+
+    Of few drives the lowest and highest (2, N), of more those over time (S, N).
+    """
     if len(sets[0]) > FEW:
         times = end * np.linspace(0, 1, max(16, MOMENTS // len(sets)))
         return np.concatenate([stroke_heights(drives, times) for drives in sets])

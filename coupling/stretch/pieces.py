@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from coupling.stretch.interval import (
     Interval,
     Moment,
-    copy,
     enter_drives,
     enter_interval,
     enter_moment,
@@ -25,7 +24,7 @@ from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, n
 from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
 from particle import grouped, kernel, kernel_device, kernel_device_no_arrays
-from particle.drives import ORDER, DriveTable, evaluate_piece, quintic_end
+from particle.drives import ORDER, DriveTable, copy_rows, evaluate_piece, quintic_end
 
 FloatArray = NDArray[np.float64]
 
@@ -130,20 +129,13 @@ def find_nodes(
                 return outcome, edges[k] + (1.0 + s) * half, solved
         for j in range(n):
             largest = max(largest, abs(left[0, j]), abs(middle[0, j]), abs(right[0, j]))
-        _copy(drives, before)
+        copy_rows(drives, before)
         if k == loop:
-            _copy(drives, at_loop)
+            copy_rows(drives, at_loop)
     if loop >= 0:
         last, first = 0.5 * (edges[count] - edges[count - 1]), 0.5 * (edges[loop + 1] - edges[loop])
         _rescale(nodes[loop, 0], last / first, nodes[count - 1, 2], _shared(table, before, at_loop, last, first))
     return FINE, 0.0, solved
-
-
-@kernel_device_no_arrays
-def _copy(a: FloatArray, out: FloatArray) -> None:
-    """Numbers (m, n) into others: numba's own copies compile messages about shapes."""
-    for i in range(len(out)):
-        copy(a[i], out[i])
 
 
 @kernel_device_no_arrays
@@ -199,8 +191,8 @@ def lay_pieces(
     most, solved = 1 << MAX_HALVINGS, 0
     while k < len(edges) - 1 and laid + 2 * most <= len(walk.edges):
         half, known = 0.5 * (edges[k + 1] - edges[k]), True
-        _copy(nodes[k, 0], left)
-        _copy(nodes[k, 1], middle)
+        copy_rows(nodes[k, 0], left)
+        copy_rows(nodes[k, 1], middle)
         at = -1.0
         over = _measure(left, middle, nodes[k, 2], 2.0, limits)
         count = 1 if over <= 1.0 else int(math.ceil(min(over ** (1 / 6) * SPARE, float(most))))
@@ -210,7 +202,7 @@ def lay_pieces(
         for p in range(count):
             top, end = 0, -1.0 + 2.0 * (p + 1) / count
             if p + 1 == count:
-                _copy(nodes[k, 2], stack[0])
+                copy_rows(nodes[k, 2], stack[0])
                 places[0] = 1.0
             else:
                 # A guess for Newton's method, from the nodes of the whole interval.
@@ -232,12 +224,12 @@ def lay_pieces(
                     lay_piece(left, stack[top], length, walk.coefficients[laid])
                     walk.edges[laid] = edges[k] + (1.0 + at) * half
                     laid += 1
-                    _copy(stack[top], left)
+                    copy_rows(stack[top], left)
                     at = places[top]
                     top -= 1
                 else:
                     top += 1
-                    _copy(middle, stack[top])
+                    copy_rows(middle, stack[top])
                     places[top] = at + 0.5 * length
                 known = False
         k += 1

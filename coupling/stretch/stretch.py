@@ -63,7 +63,7 @@ class Stretch:
 
     @property
     def reduction_error(self) -> float:
-        """Of the model against full solutions that were held out, over the largest w."""
+        """Of the model against full solutions that were not used to make it, over the largest w."""
         return self.model.reduction.error
 
     @property

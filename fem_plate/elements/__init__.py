@@ -2,7 +2,7 @@
 
 from fem_plate.elements import forms
 from fem_plate.elements.anisotropic import AnisotropicPlate
-from fem_plate.elements.argyris import DEGREE, polynomials
+from fem_plate.elements.argyris import DEGREE
 from fem_plate.elements.corners import MAX_EXPONENT
 from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy, plate_energy

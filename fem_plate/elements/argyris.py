@@ -15,10 +15,9 @@ from math import factorial
 
 import numpy as np
 
-from fem_plate.elements.rim import unit_gauss
+from fem_plate.elements.rim import DEGREE, unit_gauss
 from fem_plate.types import FloatArray, IntArray
 
-DEGREE = 5  # the lowest
 # Derivatives by order: [value], [x, y], [xx, xy, yy], [xxx, xxy, xyy, yyy].
 DERIVATIVES = [[(order - k, k) for k in range(order + 1)] for order in range(4)]
 # The reference triangle, its centroid at the origin; edge k runs from corner k to corner k + 1.
@@ -219,7 +218,7 @@ class Triangles:
         return self.of_reference(x, triangle, order) @ self.transform[triangle]
 
     def of_reference(self, x: FloatArray, triangle: IntArray, order: int) -> FloatArray:
-        """The same of the reference functions, carried over: what `transform` takes the triangle's unknowns to."""
+        """The same derivatives of the reference triangle's functions; times `transform` they are `derivatives`."""
         u, v = np.moveaxis(self.reference(x, triangle), 2, 0)
         table = self.functions.derivatives(u, v, order)
         if not order:

@@ -72,7 +72,7 @@ class EnrichedSpace(PlateSpace):
 
     @cached_property
     def _energies(self) -> tuple[FloatArray, FloatArray]:
-        """The energies of s - X but for the rim's terms: with elements (plain, E), by quadrature; its own, (E, E)."""
+        """The energies of s - X without the rim's terms: with elements (plain, E), by quadrature; its own, (E, E)."""
         with_elements, own = self._remainders.bending()
         if self._tension:
             stretched, own_stretched = self._remainders.stretching()

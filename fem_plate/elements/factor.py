@@ -35,8 +35,7 @@ def factorised(matrix: csc_matrix) -> Callable[[FloatArray], FloatArray]:
         scales = scale if load.ndim == 1 else scale[:, None]
         return np.asarray(scales * kept[0].solve(scales * load))
 
-    if threading.current_thread() is not threading.main_thread():
-        weakref.finalize(solve, _drop, kept).atexit = False
+    weakref.finalize(solve, _drop, kept).atexit = False
     return solve
 
 
@@ -45,8 +44,6 @@ def _kept(factor: Callable[[], Any]) -> list[Any]:
 
     scipy counts the memory of factors by threads, and leaks what another thread drops than the one that made it.
     """
-    if threading.current_thread() is threading.main_thread():
-        return [factor()]
     made: Future[Any] = Future()
     _queue().put(partial(_make, factor, made))
     return [made.result()]

@@ -42,8 +42,8 @@ class PlateModel:
     tension: 1/m^2, over the rigidity too, of a plate of one law; 0 where a boundary is free.
     wedges: corners with functions of their own, of an isotropic plate.
     rim_points: (k, 2) m, on free boundaries, where forces load the elements.
-    degree: of the elements; above five of a plate of one law, without tension, that its supports hold, and without
-    corners or points of the kinds above.
+    degree: of the elements; above five only for a plate of one law, held by its supports, without tension,
+    free_corners, wedges and rim_points.
     """
 
     def __init__(

@@ -46,8 +46,8 @@ def prescribed(support: str, normal: FloatArray) -> tuple[FloatArray, FloatArray
 
 
 # A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only, and
-# penalties this share of the rim's cells, at degree five. Traces grow with the square of the degree.
-RIM_POINTS, QUINTIC = 8, 5
+# penalties this share of the rim's cells, at the lowest degree. Traces grow with the square of the degree.
+RIM_POINTS, DEGREE = 8, 5
 BULGE = 1e-14  # of the plate's size: less between chord and rim is rounding
 
 
@@ -72,11 +72,9 @@ class Slivers(NamedTuple):
     weights: FloatArray  # (k, n)
 
 
-def rim_quadrature(
-    mesh: PlateMesh, supports: Mapping[str, str], degree: int = QUINTIC
-) -> tuple[RimQuadrature, Slivers]:
+def rim_quadrature(mesh: PlateMesh, supports: Mapping[str, str], degree: int = DEGREE) -> tuple[RimQuadrature, Slivers]:
     """Quadrature on the rim of a mesh and on what its triangles miss of the plate, both dimensionless."""
-    gauss, weights = unit_gauss(RIM_POINTS + degree - QUINTIC)
+    gauss, weights = unit_gauss(RIM_POINTS + degree - DEGREE)
     s = np.concatenate([[0.0], gauss, [1.0]])  # the ends have no weight, but carry `twist`
     edges = np.concatenate(list(mesh.boundaries.values()))
     triangle = _owners(mesh, edges)
@@ -101,7 +99,7 @@ def rim_quadrature(
         * np.abs(areas(mesh.points / mesh.size, mesh.triangles[triangle]))
         / np.linalg.norm(chords[:, 1] - chords[:, 0], axis=1)
     )
-    h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height) * (QUINTIC / degree) ** 2
+    h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height) * (DEGREE / degree) ** 2
     rim = RimQuadrature(triangle, points, length, normal, T, c, h, twist)
     return rim, _slivers(triangle, chords, points[:, 1:-1], tangents[:, 1:-1])
 

@@ -287,7 +287,7 @@ class PlateSpace:
     def samples(self) -> FloatArray:
         """Where functions are compared, (n, 2): the mesh's points; above degree five the middles of its cells, too.
 
-        At points functions of a high degree are better than elsewhere, by a factor of 30.
+        At the mesh's points functions of a high degree are better than elsewhere, by a factor of 30.
         """
         high = self.triangles.functions.degree > DEGREE
         return np.concatenate([self.points, self.triangles.centre]) if high else self.points

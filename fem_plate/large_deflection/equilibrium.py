@@ -153,7 +153,7 @@ class Equilibrium:
         values = self.trial.extra.values(points)
         of_v, of_extra = self.bending @ state.v + self.trial.cross @ state.extra, self.trial.inner @ state.extra
         unpressed = 0.5 * (state.v @ (of_v + self.trial.cross @ state.extra) + state.extra @ of_extra)
-        # With phi a bending energy is a mean height, but for what rigid motions bear.
+        # With phi a bending energy is a mean height, except for what rigid motions bear.
         raised = weights @ (
             self.space.point_values(points, self.space.quadrature_triangles) @ state.v + values[:, :-1] @ state.extra
         )
@@ -197,7 +197,7 @@ class Equilibrium:
         )
 
     def energy(self, state: Coefficients, loads: Loads) -> float:
-        """The energy of plate, springs and loads, but for a constant."""
+        """The energy of plate, springs and loads, up to a constant."""
         trial = self.trial
         of_v, of_extra = self.bending_forces(state)
         linear = state.pressure * (trial.load @ state.v + trial.extra_load @ state.extra)

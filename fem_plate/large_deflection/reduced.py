@@ -32,7 +32,7 @@ class Forms(NamedTuple):
 class ReducedPlate:
     """A von Karman plate in N drives d (strokes or forces) and n corrections c, b = (d, c).
 
-    Its energy, but for what depends on d alone, and the in-plane motions that follow are
+    Its energy, except for what depends on d alone, and the in-plane motions that follow are
 
         E(c; d) = 1/2 c'K c + p'c + 1/2 sum_r f_r^2,   f_r = 1/2 b'A_r b + a_r,   r < R
         g_m = 1/2 b'B_m b + e_m,                                                  m < M

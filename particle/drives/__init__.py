@@ -5,6 +5,7 @@ from particle.drives.pieces import (
     ORDER,
     DriveTable,
     breakpoint_slack,
+    copy_rows,
     drive_breakpoint,
     drive_piece,
     evaluate_piece,

@@ -125,7 +125,7 @@ class Segment:
         A field is wrong; names each.
     """
 
-    stroke: float | None = None  # m, needed but for "hold"
+    stroke: float | None = None  # m, needed except for "hold"
     frequency: float | None = None  # Hz, likewise
     cycle: str = "up-down"
     cycles: int = 1
@@ -266,6 +266,6 @@ class SegmentDrive(Evaluated):
 
 
 def returns(schedule: Sequence[Segment]) -> bool:
-    """Whether a schedule ends at height 0, but for rounding."""
+    """Whether a schedule ends at height 0, up to rounding."""
     rises = [segment.rise for segment in schedule]
     return abs(math.fsum(rises)) <= 1e-12 * max(map(abs, rises), default=0.0)

@@ -87,7 +87,7 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
 def find_piece(
     table: DriveTable, i: int, within: float, time: float, unit: float, out: FloatArray
 ) -> tuple[float, int]:
-    """The same of the piece at `within` [s]; returns the passes behind it, and its segment or NO_SEGMENT: it holds."""
+    """The same of the piece at `within` [s]; returns the passes behind it, and its segment or, at rest, NO_SEGMENT."""
     for k in range(ORDER):
         out[k] = 0.0
     if within < table.delay[i]:
@@ -152,6 +152,14 @@ def shift_quintic(c: FloatArray, shift: float, ratio: float, out: FloatArray) ->
     out[3] = ((10 * c_5 * s + 4 * c_4) * s + c_3) * (power * ratio)
     out[4] = (5 * c_5 * s + c_4) * (power * power)
     out[5] = c_5 * (power * power * ratio)
+
+
+@device_no_arrays
+def copy_rows(c: FloatArray, out: FloatArray) -> None:
+    """Polynomials (m, n) into others: numba's own copies compile messages about shapes."""
+    for i in range(c.shape[0]):
+        for k in range(c.shape[1]):
+            out[i, k] = c[i, k]
 
 
 @device_no_arrays

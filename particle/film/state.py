@@ -103,7 +103,7 @@ def fill_rate(
 def _fill_point_rate(
     request: Request, layer: Layer, memory: Memory, state: FloatArray, time: float, mode: int, g: Gap, rate: FloatArray
 ) -> None:
-    """Of a point, but for its film."""
+    """Of a point, except for its film."""
     part = request.part
     f = _place_point(request, layer, memory, state, time, g)
     if mode == Mode.RESTING:
@@ -163,7 +163,7 @@ def fill_row(request: Request, layer: Layer, face: Face | tuple[()], memory: Mem
 
 @device_no_arrays
 def _fill_point_row(request: Request, layer: Layer, memory: Memory, mode: int, row: Row) -> None:
-    """Of a point, but for its film."""
+    """Of a point, except for its film."""
     state, now, part, g = memory.step[0].state, memory.now[0], request.part, memory.gap[0]
     x, y, v_x, v_y = state[X], state[Y], state[V_X], state[V_Y]
     f = _place_point(request, layer, memory, state, now.time, g)

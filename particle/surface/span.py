@@ -26,7 +26,7 @@ from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial
 from particle.surface.record import Surface
 from particle.types import FloatArray
 
-MANY = 4  # of its drives, one in so many has passed a breakpoint: a cell is then prepared from nothing for less
+MANY = 4  # where one drive in so many has passed a breakpoint, preparing a cell from nothing costs less
 MAX_SHIFT = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
 
 

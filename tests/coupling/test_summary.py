@@ -320,6 +320,17 @@ def test_a_part_on_an_actuator_sags_as_its_spring_yields(truncation):
     assert weight / (of_plate + 1) == pytest.approx(1.818e-11, rel=1e-3)
 
 
+def test_a_part_near_the_rim_sags_alike_on_any_cells():
+    """On small cells at its own rim, also where those at the opposite one are small for an actuator there."""
+    section, actuator = PlateSection(169e9, 0.3, 5e-6), [[0.99, 0.0]]
+    for place in ([-0.985, 0.02], [-0.9, 0.0], [-0.7, 0.1]):
+        part = SimpleNamespace(position=np.array([place]))
+        coarse, fine = (Plate(disc(1.0, cell), section) for cell in (0.5, 0.08))
+        with_part = fine.influence([*actuator, place], [np.inf, 0.0])
+        found = part_sag(coarse, coarse.influence(actuator), part, 1.0)
+        assert found == pytest.approx(with_part.own_heights()[1], rel=2e-3)
+
+
 @pytest.mark.parametrize("kind", ["linear", "stretching", "vibrating", "platform"])
 def test_a_summary_is_read_back_from_its_json(ran, kind):
     summary = replace(ran(kind).summary, path_error=math.inf, gravity=(0.0, 1.0, -9.81))

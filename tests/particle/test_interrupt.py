@@ -80,6 +80,7 @@ def test_of_tasks_that_fail_the_first_counts_once_all_have_ended():
 
     with pytest.raises(KeyError):
         side_by_side(fail_late, lambda: divmod(7, 0))
+    late.clear()
     with pytest.raises(ZeroDivisionError):
         side_by_side(lambda: divmod(7, 0), fail_late)
     assert late.is_set()

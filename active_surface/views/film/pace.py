@@ -43,7 +43,7 @@ class Pace:
 def pace_of(time: FloatArray, fps: float, slow_motion: float | None) -> Pace:
     """The pace of a film of stored steps at times (k,) [s]; without a wish it lasts about 8 s.
 
-    Its frames are equally far apart, but for the last, which is the run's end.
+    Its frames are equally far apart, except for the last, which is the run's end.
     fps, slow_motion: above 0.  Raises ValueError when they ask for too many frames.
     """
     begin, end = float(time[0]), float(time[-1])

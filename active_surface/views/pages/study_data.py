@@ -108,7 +108,7 @@ def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
 
 
 def _drawing(study: Study, along: Unit) -> dict[str, Any]:
-    """Rim, actuators and the part's face, but for those that the axes move."""
+    """Rim, actuators and the part's face, except for those that the axes move."""
     case: Case = study.case
     moved = [location for axis in study.points.axes for location in axis.field.locations]
     rim: list[Any] = []

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from particle.drives import ORDER
+from particle.drives import ORDER, copy_rows
 from particle.events.mechanics import Part
 from particle.events.polynomials import MAX_HALVINGS, halve, narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
@@ -77,9 +77,9 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
         proved = False
         if first < 0 or top < first:
             first = -1
-            _copy(rest.motion, rest.part_motion)
+            copy_rows(rest.motion, rest.part_motion)
             for i in range(len(rest.plane)):
-                _copy(rest.plane[i], rest.part_plane[i])
+                copy_rows(rest.plane[i], rest.part_plane[i])
             _narrow(rest.part_motion, rest.part_plane, rest.low[top], width)
             seconds = width * lasting
             proved = is_safe_by_bound(part, rest.part_motion, rest.part_plane, seconds, rest.quintic, rest.force)
@@ -104,14 +104,6 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
                 halve(rest.margins[top - first, row], rest.margins[top - first + 1, row])
         top += 1
     return math.inf
-
-
-@device_no_arrays
-def _copy(c: FloatArray, out: FloatArray) -> None:
-    """Polynomials (m, n) into others: numba's own copies compile messages about shapes."""
-    for i in range(c.shape[0]):
-        for k in range(c.shape[1]):
-            out[i, k] = c[i, k]
 
 
 @device_no_arrays
