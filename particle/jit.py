@@ -8,10 +8,11 @@ would optimise each function with what it calls, and make machine code of it; de
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar
 
 import numba
-from numba.core import config
+from numba.core import config, serialize
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
@@ -21,6 +22,9 @@ from numba.core.typed_passes import NativeLowering
 from particle.kernel_cache import KernelCache, place_of
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+# Kernels ask for the types of what they return. A Python function would raise KeyboardInterrupt in their midst, if
+# Ctrl-C had arrived while they ran, and the process would crash. The cache answers without one.
+serialize._numba_unpickle = cache(serialize._numba_unpickle)
 OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 
 

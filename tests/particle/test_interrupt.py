@@ -1,6 +1,8 @@
 """Ctrl-C: heard whatever the thread that waits is doing, and not while something must not be broken off."""
 
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -124,3 +126,33 @@ def test_a_handler_of_somebody_else_is_left_in_place():
     wait(lambda seconds: signal.raise_signal(signal.SIGINT) or True)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     assert heard == [1]
+
+
+def test_ctrl_c_that_arrives_in_a_kernel_is_raised_after_it(tmp_path):
+    """Not as numba makes the named tuple that it returns, where the process crashed."""
+    code = """
+import math, signal, threading
+from typing import NamedTuple
+from particle.jit import jit
+
+class Found(NamedTuple):
+    value: float
+
+@jit
+def spin(turns):
+    value = 0.0
+    for k in range(turns):
+        value = math.sin(value + k)
+    return Found(value)
+
+spin(1)
+threading.Timer(0.05, lambda: signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)).start()
+try:
+    spin(30_000_000)
+except KeyboardInterrupt:
+    print("raised")
+"""
+    path = tmp_path / "program.py"
+    path.write_text(code)
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "raised\n", "")
