@@ -73,10 +73,10 @@ def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
         bars = np.zeros((len(spans), 4, 2))
         bars[:, :, 0], bars[:, 1:3, 1] = spans[:, [0, 0, 1, 1]], 1.0
         shades = PolyCollection(list(bars), transform=across, zorder=0, **_look(state))
+        shades.set_snap(False)  # moved to whole pixels, short stretches would vanish here and fill pixels there
         if state is not State.STICK:  # one path, as each with a hatch takes a millisecond
             whole: Any = Path.make_compound_path_from_polys(bars)
             shades.set_verts_and_codes([whole.vertices], [whole.codes])
-            shades.set_snap(True)  # to whole pixels, as paths with few corners are anyway
         axes.add_collection(shades, autolim=False)
 
 

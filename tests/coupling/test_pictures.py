@@ -36,7 +36,7 @@ from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
 from meshes import disc
-from particle import Drive, Samples
+from particle import Drive, Samples, State, shade
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
 DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
@@ -363,3 +363,21 @@ def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heig
     low, high = figure.axes[1].get_ylim()
     assert -1.3 < low <= -1 + 1e-12 and 2 - 1e-12 <= high < 2.5
     assert [key.get_label() for key in keys] == ["2 actuators, not marked"]
+
+
+@pytest.mark.parametrize("count", [1, 3, 404])
+def test_rests_shorter_than_a_pixel_shade_by_their_share_of_the_time(count):
+    """Moved to whole pixels each, they shaded some times fully and others not at all."""
+    rows = SimpleNamespace(time=np.linspace(0.0, 1.0, 2 * count + 1), state=np.full(2 * count + 1, State.SLIP))
+    rows.state[::2] = State.STICK
+    figure = Figure(figsize=(4, 1), dpi=100)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.axis("off")
+    shade(axes, rows)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    dark = 1 - np.asarray(canvas.buffer_rgba())[50, :, 0] / 255
+    full = 0.18 * (1 - 0x1B / 0xFF)  # as dark as all of it at rest, in red
+    assert dark.mean() == pytest.approx(full / 2, rel=0.1)
+    blocks = dark.reshape(-1, 20).mean(axis=1)  # of twenty pixels each
+    assert count < 400 or np.ptp(blocks) < 0.2 * full
