@@ -22,7 +22,7 @@ _now = time.monotonic  # s
 PATIENCE = 2.0  # s of silence on a terminal
 PERIOD = 30.0  # s between lines elsewhere
 FIRST = 10.0  # s before the first of them, at most
-COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
+COMPILING = "Compiling what this case needs for the first time (only once; it may take a few minutes)"
 
 
 def no_progress(done: int, of: int) -> None:

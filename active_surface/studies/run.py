@@ -35,11 +35,13 @@ from active_surface.studies.sweep_table import SweepTable, sweep_table
 from active_surface.studies.validity import model_warnings
 from coupling import ProgressCallback, no_progress
 from coupling.case import quoted
+from particle import Outcome
 
 if TYPE_CHECKING:
     import xarray
 
 ENDING = ".nc"
+AT_END = dict.fromkeys((Outcome.STUCK.value, Outcome.MOVING.value), " at the end")  # it may have been otherwise before
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +216,7 @@ def lines(sweep: Sweep) -> list[tuple[str, str]]:
     rows = [
         ("paths", f"{len(sweep.study.points)}: {shape}"),
         *([("kept", _kept(sweep))] if sweep.kept else []),
-        ("outcomes", ", ".join(f"{count} {name}" for name, count in sweep.outcomes.items())),
+        ("outcomes", ", ".join(f"{count} {name}{AT_END.get(name, '')}" for name, count in sweep.outcomes.items())),
     ]
     if (largest := _largest(sweep)) is not None:
         rows.append(("distance", f"{largest * 1e6:.4f} um at most"))

@@ -96,8 +96,8 @@ def _turn(s: Summary) -> list[tuple[str, str]]:
     """How far a part with a face has turned, and how evenly it presses."""
     if s.end_heading is None or s.turned is None:
         return []
-    turned, heading = math.degrees(s.turned), math.degrees(s.end_heading)
-    least = "" if s.least_pressure is None else f"; least pressure under the part {s.least_pressure:.3g} of the mean"
+    turned, heading = round(math.degrees(s.turned), 4) + 0.0, math.degrees(s.end_heading)  # no -0.0000
+    least = "" if s.least_pressure is None else f"; least pressure under the part {s.least_pressure:.2g} of the mean"
     return [("turn", f"{turned:+.4f} degrees, to a heading of {heading:.4f} degrees{least}")]
 
 

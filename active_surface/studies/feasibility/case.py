@@ -48,7 +48,7 @@ COUNT: Final = 31  # frequencies of the areas
 MAX_CYCLES: Final = 100  # of the case's fastest drive, over which the chart's runs last at most
 COLUMNS, MAX_COLUMNS = 11, 32  # of the chart, at first and at most
 FEW_COLUMNS, MAX_FEW = 6, 12  # where each path takes a motion of the plate
-BORDERS, AREAS = "Looking which strokes move the part", "Looking where the part slips"
+BORDERS, AREAS = "Finding which strokes move the part", "Finding where the part slips"
 
 
 def feasibility(

@@ -71,7 +71,7 @@ def test_ctrl_c_ends_a_command_that_compiles(tmp_path):
         line = process.stderr.readline()
         process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=LATEST)
-    assert line == "Compiling what this case needs for the first time (once, up to some minutes)\n"
+    assert line == "Compiling what this case needs for the first time (only once; it may take a few minutes)\n"
     assert (process.returncode, output, errors) == (130, "", "interrupted\n")
     assert ctrl_c.PATIENCE < 3 and not (tmp_path / "out").exists()
 
