@@ -11,7 +11,7 @@ from active_surface.steering.knobs import KEYS, Stop
 from active_surface.steering.paths import settled
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.robustness import DEFAULT_TEXT, Scatter, disturbance_text
-from active_surface.steering.task import Route
+from active_surface.steering.task import Route, Task
 from common import joined
 from coupling.case import ActuatorCase, amplitude, quoted
 
@@ -65,7 +65,10 @@ def lines(result: Aimed) -> list[tuple[str, str]]:
     if (time := result.case.run.duration) > task.case.run.duration:
         own = f"the case's {task.case.run.duration * MILLI:g} ms, in which the part does not get that far"
         rows.append(("time", f"{time * MILLI:.4g} ms in place of {own}"))
-    rows += [] if result.reached else [("hint", text) for text in hints(result.stops, result)]
+    rows += [] if result.reached else [("hint", text) for text in (*hints(result.stops, result), *_idle(task))]
+    if result.reached and result.scatter and result.scatter.lost and not (task.settings.quantile or task.settings.cvar):
+        lost = f"{result.scatter.lost} of {len(result.scatter.distance)} disturbed runs lose the part"
+        rows.append(("hint", f"{lost}; --robust 0.9 looks for drives with which it stays"))
     return rows + _last_lines(result)
 
 
@@ -91,10 +94,19 @@ def hints(stops: Sequence[Stop], result: SteeringResult) -> list[str]:
         texts.append(f"{who} {joined(numbers)} stood at {own} {which}, {values}; {wider} allows more")
     if not settled(result.trajectory):
         texts.append("the part is not at rest for good when the run ends: a longer duration leaves it time to stop")
+    elif result.interrupted:
+        texts.append("Ctrl-C ended the search early; without it more drives are tried")
     elif not texts:
         more = f"paths = {2 * result.paths} in [aim] tries more"
         texts.append(f"none of the drives tried brings the part nearer; {more}, and `plan` goes there in steps")
     return texts
+
+
+def _idle(task: Task) -> list[str]:
+    """Which actuators the search does not drive, as they have no stroke to lessen."""
+    idle = [str(k) for k, one in enumerate(task.case.actuators) if not (amplitude(one) or task.settings.stroke)]
+    who, them = (f"actuators {joined(idle)}", "them") if len(idle) > 1 else (f"actuator {joined(idle)}", "it")
+    return [f"{who} stayed at rest, as the case gives {them} no stroke"] if idle else []
 
 
 def _value(key: str, value: float) -> str:

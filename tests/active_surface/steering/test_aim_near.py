@@ -1,6 +1,7 @@
 """Aims that begin at the case's own drives, and what stood at a bound."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from active_surface.steering import Settings, Task
 from active_surface.steering.aiming import aim_over
 from active_surface.steering.knobs import Knob, Knobs, Stop, own_drives
-from active_surface.steering.report import hints
+from active_surface.steering.report import hints, lines
 from active_surface.steering.search import _smallest_step
 from coupling import run_case
 from coupling.case import find_field
@@ -56,6 +57,17 @@ def test_a_hint_names_what_stood_at_its_bound(case, surface, own):
     assert hints([], aimed) == [
         "none of the drives tried brings the part nearer; paths = 2 in [aim] tries more, and `plan` goes there in steps"
     ]
+
+    assert hints([], replace(aimed, interrupted=True)) == [
+        "Ctrl-C ended the search early; without it more drives are tried"
+    ]
+    still = case.vary({"actuators.1.stroke": 0.0})
+    missed = replace(aimed, task=replace(aimed.task, case=still, target=(0.0, 0.0)))
+    assert ("hint", "actuator 1 stayed at rest, as the case gives it no stroke") in lines(missed)
+
+    shaken = replace(aimed, scatter=replace(aimed.scatter, distance=np.array([1e-6, np.inf])))
+    said = ("hint", "1 of 2 disturbed runs lose the part; --robust 0.9 looks for drives with which it stays")
+    assert (said in lines(shaken), said in lines(aimed)) == (True, False)
 
     def stop(actuator, key, low, high, highest=True):
         return Stop(Knob(find_field(case, None, f"actuators.{actuator}.{key}"), low, high), highest)
