@@ -98,11 +98,13 @@ def _draw(result: SteeringResult, title: str, path: Path) -> Path:
 def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:
     """Draw the ends around the target, without outliers, and circles around half and nine tenths of them.
 
-    A circle that would have to include lost parts is left out. Where all ends are far from the target, draw them around
-    their median, with an arrow to the target.
+    Lost parts are counted, and drawn where all are lost; a circle that would have to include some is left out. Where
+    all ends are far from the target, draw them around their median, with an arrow to the target.
     """
     off, end = scatter.ends - target, trajectory.position[-1] - target
-    places = Scatter(scatter.ends, np.where(np.isinf(scatter.distance), np.inf, np.hypot(*off.T)))  # whatever headings
+    lost = np.isinf(scatter.distance)
+    places = Scatter(scatter.ends, np.where(lost, np.inf, np.hypot(*off.T)))  # whatever headings
+    off = off[~lost | lost.all()]
     circles = {share: away for share in (0.5, 0.9) if np.isfinite(away := places.quantile(share))}
     middle = np.median(np.vstack([off, end]), axis=0)
     spread = float(np.quantile(np.hypot(*(np.vstack([off, end]) - middle).T), SHARE))
@@ -134,7 +136,8 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     axes.set_ylim(low[1], high[1])
     beyond = int((np.abs(off - centre).max(axis=1) > side).sum())
     more = f", {beyond} of them beyond this frame" if beyond else ""
-    axes.set_title(f"Where {len(off)} disturbed runs end{more}", fontsize=10)
+    more += f"; {scatter.lost} are lost" if scatter.lost else ""
+    axes.set_title(f"Where {len(lost)} disturbed runs end{more}", fontsize=10)
     return keys
 
 

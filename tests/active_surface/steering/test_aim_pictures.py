@@ -17,8 +17,11 @@ START = (260e-6, 230e-6)
 LIMIT = 2e-9  # N: with 2e-9 kg a deceleration of 1 m/s^2
 
 
-def drawn(monkeypatch, tmp_path, way, case=CASE, name=""):
-    """The axes of the figure of a part that slides along x for a way [m] to its target, and the target."""
+def drawn(monkeypatch, tmp_path, way, case=CASE, name="", lost=0):
+    """The axes of the figure of a part that slides along x for a way [m] to its target, and the target.
+
+    lost: of nine disturbed runs, in which it comes off at its start.
+    """
     case = read_case(case)
     start = case.part.position
     target = (start[0] + way, start[1])
@@ -26,6 +29,7 @@ def drawn(monkeypatch, tmp_path, way, case=CASE, name=""):
     path = simulate(platform_surface(size=1e-3), part, ConstantFriction(LIMIT), 0.1)
     assert path.position[-1] == pytest.approx(target, rel=1e-6)
     scatter = Scatter(path.position[-1:].repeat(9, axis=0) + 1e-6 * np.eye(9, 2), np.full(9, 1e-6))
+    scatter.ends[:lost], scatter.distance[:lost] = start, np.inf
     found = Aimed(case=case, trajectory=path, paths=1, scatter=scatter, task=Task(case, target, name=name), legs=())
     figures = []
     monkeypatch.setattr(picture, "save_picture", lambda figure, path: figures.append(figure))
@@ -45,6 +49,15 @@ def test_a_short_path_is_drawn_in_a_window_beside_the_plate(monkeypatch, tmp_pat
     assert "path" not in lines and "path" in [line.get_label() for line in window.lines]
     corners = plate.patches[-1].get_bbox().get_points() * 1e3  # um
     assert corners[:, 0] == pytest.approx(window.get_xlim()) and corners[:, 1] == pytest.approx(window.get_ylim())
+
+
+def test_lost_parts_are_counted_and_leave_the_frame_to_the_others(monkeypatch, tmp_path):
+    (*_, all_there), _ = drawn(monkeypatch, tmp_path, 50e-6)
+    (*_, ends), _ = drawn(monkeypatch, tmp_path, 50e-6, lost=4)
+    assert ends.get_title() == "Where 9 disturbed runs end; 4 are lost"
+    assert len(ends.lines[0].get_xdata()) == 5 and np.ptp(ends.get_xlim()) <= 1.5 * np.ptp(all_there.get_xlim())
+    (*_, ends), _ = drawn(monkeypatch, tmp_path, 50e-6, lost=9)
+    assert len(ends.lines[0].get_xdata()) == 9
 
 
 def test_a_long_path_is_drawn_over_the_plate(monkeypatch, tmp_path):
