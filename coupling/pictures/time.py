@@ -271,7 +271,7 @@ MARKS: Final[dict[EventKind, Mark]] = {
     EventKind.LANDS: Mark("v", "white", "lands"),
     EventKind.LEAVES_PLATE: Mark("X", "white", "leaves the plate", "left the plate"),
     EventKind.OVERLOADS: Mark("P", "white", "overload", "overloaded"),
-    EventKind.TIPS: Mark("^", "white", "tips", "tipped"),
+    EventKind.TIPS: Mark("p", "white", "tips", "tipped"),  # "^" is an actuator
 }
 APART = 3.5  # points: nearer to each other, marks of events merge
 OFTEN = (EventKind.SLIPS, EventKind.STOPS)  # where shades begin and end in any case
