@@ -67,7 +67,7 @@ def check_folder(folder: Path) -> None:
         os.rmdir(tempfile.mkdtemp(prefix=".active-surface-", dir=made))  # os.access says yes to root, even in /proc
     except OSError:
         raise ValueError(
-            f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it"
+            f"Input output must be a folder that can be written to; got {folder}, but {made} does not allow it"
         ) from None
 
 

@@ -79,7 +79,7 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
         data = contents(path, MAX_TEXT)
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, _HDF5)) or b"\0" in data[:1000]:
             shown = f"; `active-surface view {name}` shows a result" if data.startswith(_HDF5) else ""
-            raise CaseError(name, [Problem(None, "", f"is not text in UTF-8, as a case, study or aim is{shown}")])
+            raise CaseError(name, [Problem(None, "", f"is not UTF-8 text, as cases, studies and aims must be{shown}")])
         text = data.decode("utf-8-sig")
         return TomlFile(name, text, _within_depth(tomllib.loads(text)))
     except CaseError:

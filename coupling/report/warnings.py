@@ -139,13 +139,13 @@ def _of_air(s: Summary) -> Iterator[str]:
     remedy = f" [air] with film = true includes it{' under a rectangle or disc without local_contact' * face}."
     remedy = remedy if s.scheme == "events" else ""
     if air.load_share is not None and air.load_share > MAX_AIR:
-        off = about(air.load_share) if air.load_share <= ESTIMATE else "as much as the way itself"
+        off = about(air.load_share) if air.load_share <= ESTIMATE else "about the whole way"
         yield (
             f"{at}a film of air under the part carries {air.load_share:.2g} times as much of the load's swing as the "
             f"contact, and friction lags: expect the way to be off by {off}.{remedy}"
         )
     if air.breathing is not None and air.breathing > MAX_AIR:
-        off = f"changes its way by {about(air.breathing)}" if air.breathing <= ESTIMATE else "can turn its way around"
+        off = f"changes its way by {about(air.breathing)}" if air.breathing <= ESTIMATE else "can reverse its way"
         yield (
             f"{at}the plate, as it bends, pumps air under the part with up to {air.breathing:.2g} times the force that "
             f"holds it, which {off}.{remedy}"
@@ -184,7 +184,7 @@ def _of_solver(s: PlateSummary) -> Iterator[str]:
 def _of_model(s: PlateSummary) -> Iterator[str]:
     if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
         far = s.can_stretch and s.linear_path_error > MAX_LINEAR_ERROR
-        remedy = f" {VON_KARMAN} in [plate] has the plate stretch." if far else ""
+        remedy = f" {VON_KARMAN} in [plate] lets the plate stretch." if far else ""
         yield (
             f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
             f"holds to about {MAX_DEFLECTION}. Expect a path error of {about(s.linear_path_error)}.{remedy}"

@@ -91,7 +91,7 @@ def test_warnings_begin_at_their_bounds(shaken: Summary) -> None:
     def texts(**figures: Any) -> str:
         return " ".join(warnings(replace(shaken, air=replace(air_of(shaken), **figures))))
 
-    assert "expect the way to be off by as much as the way itself" in texts(load_share=0.66)
+    assert "expect the way to be off by about the whole way" in texts(load_share=0.66)
     assert "expect the way to be off by about 20 %" in texts(load_share=0.2)
     assert "film of air" not in texts(load_share=0.04)
     assert "pumps" not in texts(breathing=0.04)

@@ -34,7 +34,7 @@ def test_a_folder_is_checked_by_writing_to_it(tmp_path):
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder that refuses every user")
 def test_a_folder_that_only_seems_writable_is_refused():
-    with pytest.raises(ValueError, match="that can be written to; got /proc/new, but /proc refuses it"):
+    with pytest.raises(ValueError, match="that can be written to; got /proc/new, but /proc does not allow it"):
         check_folder(Path("/proc/new"))
 
 

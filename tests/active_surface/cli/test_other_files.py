@@ -61,7 +61,7 @@ def test_a_file_that_is_not_there_leads_to_the_one_that_is_meant(folder: Path, w
 OTHERS = [
     ("first.plate.vtkhdf", b"\x89HDF\r\n\x1a\n", "; `active-surface view first.plate.vtkhdf` shows a result"),
     ("points.csv", b"load [uN], limit [nN]\n", "is not valid TOML"),
-    ("wide.toml", GOOD.encode("utf-16"), "is not text in UTF-8, as a case, study or aim is"),
+    ("wide.toml", GOOD.encode("utf-16"), "is not UTF-8 text, as cases, studies and aims must be"),
     ("latin.toml", "# 5 µm\n".encode("latin-1"), "is not UTF-8 text; got the byte 0xb5; save it as UTF-8"),
     ("zipped.toml", b"PK\x03\x04\0\0", "is not text"),
 ]
