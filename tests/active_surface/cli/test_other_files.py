@@ -63,7 +63,7 @@ OTHERS = [
     ("points.csv", b"load [uN], limit [nN]\n", "is not valid TOML"),
     ("wide.toml", GOOD.encode("utf-16"), "is not UTF-8 text, as cases, studies and aims must be"),
     ("latin.toml", "# 5 µm\n".encode("latin-1"), "is not UTF-8 text; got the byte 0xb5; save it as UTF-8"),
-    ("zipped.toml", b"PK\x03\x04\0\0", "is not text"),
+    ("zipped.toml", b"PK\x03\x04\0\0", "is not UTF-8 text"),
 ]
 
 
