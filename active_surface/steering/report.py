@@ -105,8 +105,10 @@ def hints(stops: Sequence[Stop], result: SteeringResult) -> list[str]:
 def _idle(task: Task) -> list[str]:
     """Which actuators the search does not drive, as they have no stroke to lessen."""
     idle = [str(k) for k, one in enumerate(task.case.actuators) if not (amplitude(one) or task.settings.stroke)]
-    who, them = (f"actuators {joined(idle)}", "them") if len(idle) > 1 else (f"actuator {joined(idle)}", "it")
-    return [f"{who} stayed at rest, as the case gives {them} no stroke"] if idle else []
+    if not idle:
+        return []
+    who, them = ("actuators", "them") if len(idle) > 1 else ("actuator", "it")
+    return [f"{who} {joined(idle)} stayed at rest, as the case gives {them} no stroke"]
 
 
 def _value(key: str, value: float) -> str:
