@@ -104,6 +104,7 @@ def plate_figures(
     tipping = tipping_of(case, contact, friction)
     load = float(np.nanmax(np.abs(contact.normal_force)))
     sag = part_sag(plate, shapes, trajectory, load) if with_sag else np.nan
+    # The shapes keep their error estimate.
     first, _ = side_by_side(partial(_first_frequency, plate, shapes), lambda: shapes.error_estimate)
     driven = [drive for drive in dict.fromkeys(drives) if travel(drive) > 0] or drives
     rates = None if first is None else _range([drive.frequency / first for drive in driven])

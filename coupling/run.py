@@ -122,7 +122,7 @@ def run_over(
     with progress("Following the part"):
         friction = build_friction(case)
         _ = friction.law  # found once, before both paths ask for it
-        paths = [partial(follow_part, case, scene.surface, friction, tighter) for tighter in (False, True)]
+        paths = [partial(follow_part, case, scene.surface, friction, is_tighter) for is_tighter in (False, True)]
         if output is not None and output.surface:  # whose cells are in the order in which paths come to them
             trajectory, tighter = map(interruptible, paths)
         else:

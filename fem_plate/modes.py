@@ -202,9 +202,8 @@ def _lowest(held_plate: HeldPlate, count: int, residual: float) -> tuple[FloatAr
         M=mass_operator,
         sigma=0,
         OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
-        v0=np.random.default_rng(0).standard_normal(
-            unknowns
-        ),  # fixed, so that runs agree; random, so that every mode has a share
+        # Fixed, so that runs agree; random, so that every mode has a share.
+        v0=np.random.default_rng(0).standard_normal(unknowns),
         tol=residual,
     )
     order = np.argsort(squares)
