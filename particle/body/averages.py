@@ -58,12 +58,14 @@ class Under(NamedTuple):
     groups: IntArray  # (n + 1,) which each group has; -1 after the last
     places: FloatArray  # (5, LANES n) of groups: rho [m], and weights of P_0, a_1 and a_2, 0 in lanes to spare
     sums: FloatArray  # (15, 9, LANES) averages, not yet added up
+    placed: FloatArray  # (4,) x, y, heading and time of the averages made last; nan: there are none
 
 
 def new_under(count: int) -> Under:
     """Scratch memory for so many points."""
     slots, groups = np.zeros(count, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
-    return Under(slots, groups, np.zeros((5, LANES * count)), np.zeros((ROWS, PLACE, LANES)))
+    places, sums = np.zeros((5, LANES * count)), np.zeros((ROWS, PLACE, LANES))
+    return Under(slots, groups, places, sums, np.full(4, math.nan))
 
 
 @spliced
@@ -99,6 +101,7 @@ def enter_all(
     """Prepare for a face at (x, y) [m] from `time` [s] on: a cell, NOWHERE or UNBUILT; when [s] the first span ends."""
     cosine, sine = math.cos(heading), math.sin(heading)
     until, slots = end, under.slots
+    under.placed[3] = math.nan
     for k in range(len(face.places)):
         p, q = face.places[k, 0], face.places[k, 1]
         p, q = x + cosine * p - sine * q, y + sine * p + cosine * q
@@ -158,10 +161,13 @@ def within_cells(locals_: LocalSurface, under: Under, face: Face, x: float, y: f
 @device_no_arrays
 def fill_averages(
     locals_: LocalSurface, under: Under, x: float, y: float, heading: float, time: float, out: FloatArray
-) -> None:
-    """P_0, a_1 and a_2 and their derivatives, (15, 9), of a face at (x, y) [m]."""
+) -> bool:
+    """P_0, a_1 and a_2 and their derivatives, (15, 9), of a face at (x, y) [m]; False where `out` has them already."""
+    sums, places, placed = under.sums, under.places, under.placed
+    if time == placed[3] and x == placed[0] and y == placed[1] and heading == placed[2]:
+        return False
+    placed[0], placed[1], placed[2], placed[3] = x, y, heading, time
     cosine, sine = math.cos(heading), math.sin(heading)
-    sums, places = under.sums, under.places
     for i in range(ROWS):
         for j in range(PLACE):
             out[i, j] = 0.0
@@ -190,6 +196,7 @@ def fill_averages(
         for j in range(PLACE):
             for lane in range(LANES):
                 out[i, j] += sums[i, j, lane]
+    return True
 
 
 @spliced

@@ -124,6 +124,7 @@ def rest_responses(
             needed(b, s.needed)
             for i in range(3):
                 row[2 * i + 1], row[9 + i] = b.load[i], s.needed[i]
+            memory.under.placed[3] = math.nan
             for i in range(len(b.averages[T])):
                 b.averages[T, i] = b.averages[TT, i] = 0.0
             base = base_at(memory.local, time)

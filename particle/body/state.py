@@ -47,9 +47,9 @@ def base_at(local: LocalSurface, time: float) -> Base:
 def settle(part: Part, face: Face, memory: Memory, state: FloatArray, time: float) -> bool:
     """Set up the equations at a state and time; False where there are none."""
     b = memory.balance[0]
-    fill_averages(memory.local, memory.under, state[X], state[Y], state[HEADING], time, b.averages)
+    if fill_averages(memory.local, memory.under, state[X], state[Y], state[HEADING], time, b.averages):
+        memory.counts[0].evaluations += 1
     base = base_at(memory.local, time)
-    memory.counts[0].evaluations += 1
     if not fill_pose(part, base, b):
         return False
     fill_forces(part, face, base, state[V_X], state[V_Y], state[SPIN], b)
