@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -27,6 +28,8 @@ NEGLIGIBLE = 0.1  # times `least`, of the largest product of two slopes: such pa
 IN_PLANE = 1000.0  # times `least`: in-plane motions, which carry a part less than slopes do
 DEPENDENT = 1e-10  # of the largest energy: corrections with less that is new are left out
 ROUNDING = 1e-15  # of the largest square
+
+Pairs = tuple[IntArray, IntArray, FloatArray]  # (m,) of two shapes each, and the product of their amplitudes
 
 
 def with_modes(
@@ -70,24 +73,50 @@ def _stretched(
     shapes = Columns.joined([linear, corrections])
     membrane, in_plane = discrete.membrane, discrete.plane_stress.membrane
     at = _slopes(discrete, membrane, shapes)
-    forces = np.zeros((sum(3 * s.weights.size for s in membrane.samples), 0))
     steep = amplitudes * np.max([np.abs(p).max(axis=(0, 1)) for p in at], axis=0)
-    for i, j, weights in _pairs(amplitudes, steep, least):
-        unknowns = _answers(membrane, at, i, j)
-        more = np.concatenate([forces, _forces(membrane, at, i, j, unknowns) * weights], axis=1)
-        forces = more @ _strongest(force_products(discrete, membrane, more), least)
-    forces = forces / np.sqrt(np.diag(force_products(discrete, membrane, forces)))
+    pairs = partial(_pairs, amplitudes, steep)
+    if membrane.law is None:
+        forces = _forces(membrane, _motions(membrane, at, pairs(least), least))
+    else:
+        forces = _forces_by_law(discrete, at, pairs(least), least)
     forms = forms_of(membrane.samples, forces, at)
     at = at if in_plane is membrane else _slopes(discrete, in_plane, shapes)
-    motions = np.zeros((in_plane.stiffness.shape[0], 0))
-    for i, j, weights in _pairs(amplitudes, steep, IN_PLANE * least):
-        more = np.concatenate([motions, _answers(in_plane, at, i, j) * weights], axis=1)
-        motions = more @ _strongest(more.T @ (in_plane.stiffness @ more), IN_PLANE * least)
-    motions = motions / np.sqrt(np.diag(motions.T @ (in_plane.stiffness @ motions)))
-    everything = in_plane.expand(motions)
-    own = stacked([in_plane.linear_force(samples, everything) for samples in in_plane.samples])
-    moved = -forms_of(in_plane.samples, own, at)
+    motions = _motions(in_plane, at, pairs(IN_PLANE * least), IN_PLANE * least)
+    moved = -forms_of(in_plane.samples, _forces(in_plane, motions), at)
     return ReducedPlate(bending_products(discrete, corrections), forms, in_plane=moved), motions
+
+
+def _motions(membrane: Membrane, at: list[FloatArray], pairs: Iterator[Pairs], least: float) -> FloatArray:
+    """The unknowns (m, c) of orthogonal answers to pairs of shapes, each of unit energy."""
+    found = np.zeros((membrane.stiffness.shape[0], 0))
+    for i, j, weights in pairs:
+        more = np.concatenate([found, _answers(membrane, at, i, j) * weights], axis=1)
+        found = more @ _strongest(more.T @ (membrane.stiffness @ more), least)
+    return found / np.sqrt(np.diag(found.T @ (membrane.stiffness @ found)))
+
+
+def _forces(membrane: Membrane, unknowns: FloatArray) -> FloatArray:
+    """The membrane forces (samples, c) of unknowns alone."""
+    everything = membrane.expand(unknowns)
+    return stacked([membrane.linear_force(samples, everything) for samples in membrane.samples])
+
+
+def _forces_by_law(discrete: DiscretePlate, at: list[FloatArray], pairs: Iterator[Pairs], least: float) -> FloatArray:
+    """The membrane forces (samples, c) of orthogonal answers, each of unit energy, where slopes add to them."""
+    membrane = discrete.membrane
+    found = np.zeros((sum(3 * s.weights.size for s in membrane.samples), 0))
+    for i, j, weights in pairs:
+        strains = stacked([_by_law(membrane, _products(p[:, :, i], p[:, :, j])) for p in at])
+        forces = _forces(membrane, _answers(membrane, at, i, j)) + strains
+        more = np.concatenate([found, forces * weights], axis=1)
+        found = more @ _strongest(force_products(discrete, membrane, more), least)
+    return found / np.sqrt(np.diag(force_products(discrete, membrane, found)))
+
+
+def _by_law(membrane: Membrane, strains: FloatArray) -> FloatArray:
+    """The forces (k, 3 n, c) of strains."""
+    thirds = strains.reshape(len(strains), 3, -1, strains.shape[2])
+    return np.einsum("ab,kbnc->kanc", membrane.law, thirds).reshape(strains.shape)
 
 
 def _slopes(discrete: DiscretePlate, membrane: Membrane, columns: Columns) -> list[FloatArray]:
@@ -98,7 +127,7 @@ def _slopes(discrete: DiscretePlate, membrane: Membrane, columns: Columns) -> li
     return slopes(discrete, membrane.samples, known, columns)
 
 
-def _pairs(amplitudes: FloatArray, steep: FloatArray, least: float) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
+def _pairs(amplitudes: FloatArray, steep: FloatArray, least: float) -> Iterator[Pairs]:
     """Batches of two shapes each and the product of their amplitudes; steep: slopes (b,) that shapes reach."""
     i, j = np.triu_indices(len(amplitudes))
     together = steep[i] * steep[j]
@@ -116,19 +145,6 @@ def _answers(membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray)
         square = samples.weighted(_products(p[:, :, i], p[:, :, j]))
         np.add.at(t, membrane.dofs[samples.triangle], samples.operator.transpose(0, 2, 1) @ square)
     return -membrane.sign * membrane.solve(np.ascontiguousarray(membrane.reduce(t)))
-
-
-def _forces(membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray, unknowns: FloatArray) -> FloatArray:
-    """The membrane forces (samples, c) that belong to them."""
-    everything, parts = membrane.expand(unknowns), []
-    for samples, p in zip(membrane.samples, at, strict=True):
-        force = membrane.linear_force(samples, everything)
-        if membrane.law is not None:
-            square = _products(p[:, :, i], p[:, :, j])
-            thirds = square.reshape(len(square), 3, -1, square.shape[2])
-            force = force + np.einsum("ab,kbnc->kanc", membrane.law, thirds).reshape(square.shape)
-        parts.append(force)
-    return stacked(parts)
 
 
 def _products(p: FloatArray, q: FloatArray) -> FloatArray:
