@@ -27,7 +27,7 @@ from coupling.stretch import (
     new_moment,
     new_state,
 )
-from fem_plate.large_deflection import Forms, ReducedPlate
+from fem_plate.large_deflection import Forms
 from particle import grouped, kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
@@ -65,20 +65,30 @@ class Bench(NamedTuple):
     corrections: FloatArray  # (n,), the corrections, as guessed or last found
 
 
-def ringing_of(plate: ReducedPlate, square: FloatArray, drag: FloatArray, mass: FloatArray, m: FloatArray) -> Ringing:
-    """The plate whose last drives are the a modes; m: (a, N) their participation."""
-    forms, count = plate.forms, m.shape[1]
-    i, j = np.triu_indices(plate.drive_count)
+def ringing_of(forms: Forms, square: FloatArray, drag: FloatArray, mass: FloatArray, m: FloatArray) -> Ringing:
+    """The plate with these forms, whose last drives are the a modes; m: (a, N) their participation."""
+    i, j = np.triu_indices(forms.drives.shape[1])
+    modes, membranes = slice(m.shape[1], None), forms.membranes
+    of_modes = np.concatenate([forms.drives[:membranes, modes], forms.mixed[:membranes, modes]], axis=2)
     return Ringing(
         forms,
         np.where(i == j, 0.5, 1.0)[:, None] * forms.drives[:, i, j].T,
-        forms.mixed.transpose(1, 0, 2).reshape(plate.drive_count, -1),
-        plate.membrane[:, count : plate.drive_count].reshape(len(plate.membrane), -1),
+        forms.mixed.transpose(1, 0, 2).reshape(len(forms.drives[0]), -1),
+        of_modes.reshape(membranes, -1),
         square,
         drag,
         mass,
         m,
     )
+
+
+def driven_by_powers(ringing: Ringing, pieces: FloatArray) -> Ringing:
+    """The same under drives s^0 to s^5 in place of N, which are pieces (N, 6) in these: fewer where there are many."""
+    m, forms = ringing.participation, ringing.forms
+    count, modes = m.shape[1], np.eye(len(m))
+    turn = np.block([[pieces.T, np.zeros((ORDER, len(m)))], [np.zeros((len(m), count)), modes]])
+    forms = forms._replace(drives=turn @ forms.drives @ turn.T, mixed=turn @ forms.mixed)
+    return ringing_of(forms, ringing.square, ringing.drag, ringing.mass, m @ pieces)
 
 
 @kernel
@@ -97,12 +107,14 @@ def new_bench(ringing: Ringing) -> Bench:
     )
 
 
-@kernel_device_no_arrays
-def enter_pieces(table: DriveTable, begin: float, end: float, bench: Bench) -> None:
-    """The drives' pieces between two breakpoints [s]."""
-    half = 0.5 * (end - begin)
-    for i in range(len(bench.pieces)):  # in the middle, where rounding at the ends cannot mistake it
-        drive_piece(table, i, begin + half, half, bench.pieces[i])
+@kernel
+def pieces_between(table: DriveTable, begin: float, end: float) -> FloatArray:
+    """The drives' pieces (N, 6) between two breakpoints [s]."""
+    half, count = 0.5 * (end - begin), len(table.delay)
+    pieces = np.zeros((count, ORDER))
+    for i in range(count):  # in the middle, where rounding at the ends cannot mistake it
+        drive_piece(table, i, begin + half, half, pieces[i])
+    return pieces
 
 
 @kernel_inlined

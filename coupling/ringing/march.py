@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.ringing.forces import Bench, Ringing, accelerate, enter_pieces, fill_node
+from coupling.ringing.forces import Bench, Ringing, accelerate, fill_node
 from coupling.stretch import FINE, lay_piece
 from particle import kernel, kernel_device_no_arrays
-from particle.drives import DriveTable, quintic_end
+from particle.drives import copy_rows, quintic_end
 from particle.events import Tableau
 
 FloatArray = NDArray[np.float64]
@@ -23,7 +23,7 @@ def march(
     ringing: Ringing,
     bench: Bench,
     pair: Tableau,
-    table: DriveTable,
+    pieces: FloatArray,
     begin: float,
     end: float,
     q: FloatArray,
@@ -32,7 +32,7 @@ def march(
 ) -> tuple[int, float]:
     """Take equal steps from `begin` to `end` [s], two breakpoints, and leave all nodes (steps + 1, 3, a + n + M).
 
-    pair: the method.  table: the drives.  q, q_t: (a,) m and m/s, of the modes at the begin; then at the end.
+    pair: the method.  pieces: (N, 6) of the drives.  q, q_t: (a,) m and m/s, of the modes at the begin; then at the end.
     Returns what came of it, and the largest error of a step: that of velocities, over the fastest mode's frequency.
     """
     steps, stages, half = len(nodes) - 1, pair.a.shape[1], 0.5 * (end - begin)
@@ -40,7 +40,7 @@ def march(
     rates, speeds = np.zeros((stages + 1, own)), np.zeros((stages + 1, own))  # q'' and q' of each stage
     at, speed = np.zeros(own), np.zeros(own)
     fastest, worst = math.sqrt(ringing.square.max()), 0.0
-    enter_pieces(table, begin, end, bench)
+    copy_rows(pieces, bench.pieces)
     outcome = accelerate(ringing, bench, -1.0, half, q, q_t, rates[0], False, True)
     fill_node(ringing, bench, q, q_t, rates[0], nodes[0])
     for n in range(steps):

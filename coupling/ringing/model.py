@@ -67,7 +67,7 @@ class RingingModel(StretchModel):
         omega = modes.omega[:count]
         ratio = self.damping(modes.frequencies[:count])
         return ringing_of(
-            follows,
+            follows.forms,
             omega**2,
             2 * ratio * omega,
             np.diag(plate.stiffness)[:count] / omega**2,

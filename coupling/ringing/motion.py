@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.progress import doing
-from coupling.ringing.forces import Ringing, new_bench
+from coupling.ringing.forces import Ringing, driven_by_powers, new_bench, pieces_between
 from coupling.ringing.march import lay_steps, march
 from coupling.stretch import FINE, NOT_STABLE, Corrections, Schedule, schedule_of
 from coupling.vibration import enter_jump
 from particle import AnyDrive
-from particle.drives import ORDER, drive_piece, drive_table, quintic_drives
+from particle.drives import ORDER, drive_table, quintic_drives
 from particle.events import tableau
 
 FloatArray = NDArray[np.float64]
@@ -34,6 +34,7 @@ MAX_PASSES = 200  # to a steady state; more where damping is low
 MIN_DECAY = 40.0  # zeta omega t after which nothing is left of the start
 MERGED = 1e-12  # of a period: a breakpoint that is its end
 MIN_ACCELERATION = 1e-9  # of the largest acceleration: with all drives at rest, the plate rests, too
+FEW_DRIVES = ORDER  # more of them are replaced by the powers of time that their pieces are made of
 MAX_PIECES = 20_000_000  # of all shapes: about 2 GB
 
 
@@ -90,7 +91,9 @@ class _Walker:
 
     def __init__(self, ringing: Ringing, drives: Sequence[AnyDrive], limits: FloatArray) -> None:
         self._ringing, self._drives, self._limits = ringing, drives, limits
-        self._bench, self._pair, self._table = new_bench(ringing), tableau(8), drive_table(drives)
+        self._pair, self._table = tableau(8), drive_table(drives)
+        many = len(drives) > FEW_DRIVES
+        self._bench = new_bench(driven_by_powers(ringing, np.zeros((len(drives), ORDER))) if many else ringing)
         self._fastest, self._marks = math.sqrt(float(ringing.square.max())), dict[int, _Mark]()
         self._edges, self._rows, self._pieces = [np.zeros(1)], list[FloatArray](), 0
         self._largest = 0.0  # m, of a mode
@@ -154,15 +157,14 @@ class _Walker:
             for first, last in pairwise(np.linspace(begin, until, parts + 1).tolist()):
                 self._cross(first, last, shift, state)
                 doing("stretching plate: following its ringing", min((last + shift) / end, 1.0))
-                at_rest = until == end and not self._bench.pieces[:, 1:].any()
+                at_rest = until == end and not pieces_between(self._table, begin, until)[:, 1:].any()
                 if at_rest and self._accelerations[-1] <= MIN_ACCELERATION * self.largest_acceleration:
                     return
 
     def _jump(self, begin: float, until: float, state: _State) -> None:
         """What the heights' and velocities' jumps make of the modes: the plate's mass does not jump."""
-        half, piece, jump = 0.5 * (until - begin), np.zeros(ORDER), np.zeros(2)
-        for i in range(len(self._drives)):
-            drive_piece(self._table, i, begin + half, half, piece)
+        half, jump = 0.5 * (until - begin), np.zeros(2)
+        for i, piece in enumerate(pieces_between(self._table, begin, until)):
             enter_jump(piece, half, state.before[i], jump)
             state.q -= self._ringing.participation[:, i] * jump[0]
             state.q_t -= self._ringing.participation[:, i] * jump[1]
@@ -170,13 +172,16 @@ class _Walker:
     def _cross(self, begin: float, until: float, shift: float, state: _State) -> None:
         """Walk between two breakpoints [s], in steps fine enough for both motion and pieces."""
         width, own, guess = len(self._limits), len(state.q), self._bench.corrections.copy()
+        ringing, pieces = self._ringing, pieces_between(self._table, begin, until)
+        if len(pieces) > FEW_DRIVES:
+            ringing, pieces = driven_by_powers(ringing, pieces), np.eye(ORDER)
         at_first = (until - begin) * self._fastest / MAX_RADIANS
         for _ in range(MAX_REFINEMENTS):
             steps, finer = 2 * math.ceil(self._finer * at_first / 2), MAX_FINER
             nodes = np.zeros((steps + 1, 3, width))
             q, q_t = state.q.copy(), state.q_t.copy()
             self._bench.corrections[:] = guess  # steps that are too long may have led astray
-            outcome, error = march(self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes)
+            outcome, error = march(ringing, self._bench, self._pair, pieces, begin, until, q, q_t, nodes)
             largest = max(float(np.abs(nodes[:, 0, :own]).max()), self._largest)
             if outcome == FINE:
                 finer = _finer(error, MAX_STEP_ERROR * largest, STEP_ORDER)

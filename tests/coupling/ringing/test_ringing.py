@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coupling.ringing import make_ringing_model
+from coupling.ringing import make_ringing_model, motion
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import make_model
 from coupling.vibration import always_running, choice, make_vibration_model, motion_of
@@ -58,6 +58,21 @@ def test_free_vibration_at_two_thicknesses_keeps_its_energy():
     print(f"energy drifts by {np.ptp(total) / total[0]:.1e} over {len(times)} pieces")
     assert np.ptp(total) < 1e-8 * total[0]
     assert kinetic.max() > 0.5 * total[0]  # it swings
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+def test_powers_of_time_stand_for_many_drives(monkeypatch):
+    drive = Drive(THICKNESS, 100e3, delay=3e-6)
+    plate = model(THICKNESS, 0.02, 100e3)
+    one = plate.corrections([drive], 4e-5)
+    monkeypatch.setattr(motion, "FEW_DRIVES", 0)
+    other = plate.corrections([drive], 4e-5)
+    assert one.pieces == other.pieces
+    assert not np.array_equal(one.drives[0].evaluate(TIMES), other.drives[0].evaluate(TIMES))  # sums in another order
+    for own, same in zip(one.drives, other.drives, strict=True):
+        for values, expected in zip(same.evaluate(TIMES), own.evaluate(TIMES), strict=True):
+            np.testing.assert_allclose(values, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 
 
 def zero(drive, low, high):
