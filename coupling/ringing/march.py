@@ -32,7 +32,8 @@ def march(
 ) -> tuple[int, float]:
     """Take equal steps from `begin` to `end` [s], two breakpoints, and leave all nodes (steps + 1, 3, a + n + M).
 
-    pair: the method.  pieces: (N, 6) of the drives.  q, q_t: (a,) m and m/s, of the modes at the begin; then at the end.
+    pair: the method.  pieces: (N, 6) of the drives.
+    q, q_t: (a,) m and m/s, of the modes at the begin; then at the end.
     Returns what came of it, and the largest error of a step: that of velocities, over the fastest mode's frequency.
     """
     steps, stages, half = len(nodes) - 1, pair.a.shape[1], 0.5 * (end - begin)
