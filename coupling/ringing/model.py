@@ -101,7 +101,9 @@ class RingingModel(StretchModel):
         start = at_rest[: self.count], np.zeros(self.count)
         found, largest = ringing_corrections(self.ringing, drives, end, start, self.limits(allowed), self.steady)
         above = linear.chosen(np.arange(len(self.chosen.modes.omega)) >= self.count)
-        own = [*found.drives, *(above.modal_drives(allowed) if len(above.oscillators.omega) else [])]
+        own = [*found.drives]
+        if len(above.oscillators.omega):
+            own += above.modal_drives(allowed, found.drives[0])
         error = 2 * allowed / max(lifted, largest) if allowed > 0 else 0.0
         return replace(found, drives=own, error=error, acceleration_error=error)
 

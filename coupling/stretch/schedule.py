@@ -46,13 +46,13 @@ def schedule_of(drives: Sequence[AnyDrive], end: float) -> Schedule:
 
 def _edges(table: DriveTable, end: float, begin: float = 0.0) -> FloatArray:
     """Begin, end and all breakpoints between them [s]."""
-    times = _breakpoints(table, begin, end)
+    times = breakpoints(table, begin, end)
     near = CLOSEST * min(float(table.stroke_time.min(initial=math.inf)), end - begin)
     return np.concatenate([[begin], times[(times > begin + near) & (times < end - near)], [end]])
 
 
 @kernel
-def _breakpoints(table: DriveTable, begin: float, end: float) -> FloatArray:
+def breakpoints(table: DriveTable, begin: float, end: float) -> FloatArray:
     """The breakpoints after `begin` and before `end` [s]."""
     times, count = np.empty(64), 0
     time = next_breakpoint(table, begin)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch import Schedule, schedule_of
+from coupling.stretch import Schedule, breakpoints, schedule_of
 from coupling.vibration.oscillators import Course, Oscillators, at_times, follow, lay_edges, lay_pieces
 from coupling.vibration.steady import steady_state
 from particle import AnyDrive
@@ -54,12 +54,14 @@ class ModalMotion:
         times = (edges[:-1, None] + np.diff(edges)[:, None] * np.linspace(0.0, 1.0, 8, endpoint=False)).ravel()
         return float(np.abs(self.evaluate(times)[2]).max(initial=0.0))
 
-    def modal_drives(self, allowed: float) -> list[QuinticDrive]:
+    def modal_drives(self, allowed: float, beside: AnyDrive | None = None) -> list[QuinticDrive]:
         """A drive for each mode [m]; allowed: m/s^2, what their accelerations may be off by.
 
+        beside: a drive whose breakpoints serve where they can.
         Raises ValueError when that takes too many pieces.
         """
-        begins, intervals = lay_edges(self.oscillators, self.course, allowed)
+        marks = np.zeros(0) if beside is None else self._marks(beside)
+        begins, intervals = lay_edges(self.oscillators, self.course, allowed, marks)
         n = len(self.oscillators.omega)
         if len(begins) * n > MAX_PIECES:
             raise ValueError(
@@ -78,6 +80,17 @@ class ModalMotion:
             max(drive.frequency for drive in self.drives),
             np.zeros(len(rows)),
         )
+
+    def _marks(self, beside: AnyDrive) -> FloatArray:
+        """The breakpoints [s] of another drive; in the loop those that it comes to."""
+        edges, table = self.course.edges, drive_table([beside])
+        if self.loop < 0:
+            return breakpoints(table, 0.0, edges[-1])
+        begin, period = edges[self.loop], edges[-1] - edges[self.loop]
+        settled = beside.delay + beside.segments().lead_time
+        later = max(0, math.ceil((settled - begin) / period)) * period
+        in_loop = breakpoints(table, begin + later, edges[-1] + later) - later
+        return np.concatenate([breakpoints(table, 0.0, begin), in_loop])
 
 
 def modal_motion(oscillators: Oscillators, drives: Sequence[AnyDrive], end: float, steady: bool = False) -> ModalMotion:

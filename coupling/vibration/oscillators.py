@@ -26,6 +26,7 @@ ROUNDING = 1e-13  # of a drive's height or velocity: what is no jump
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
 HERMITE_ERROR = 3 / 8 / 720
 SILENT = 0.1  # of the error allowed: weaker ringing need not be followed
+MERGED = 1e-9  # of an interval: a mark where a piece begins already
 LONGEST = 30.0  # radians of the slowest mode, squared, that pieces over ringing of that last share may take
 
 
@@ -178,12 +179,14 @@ def _step(oscillators: Oscillators, course: Course, k: int, since: float, allowe
 
 
 @kernel
-def lay_edges(oscillators: Oscillators, course: Course, allowed: float) -> tuple[FloatArray, NDArray[np.int64]]:
+def lay_edges(
+    oscillators: Oscillators, course: Course, allowed: float, marks: FloatArray
+) -> tuple[FloatArray, NDArray[np.int64]]:
     """Where pieces begin [s], after their interval's begin, and the interval of each; allowed: m/s^2, their error.
 
-    They grow longer as the ringing decays.
+    They grow longer as the ringing decays. Where they can, they begin at marks (m,) [s], where others do.
     """
-    count, begins, intervals = 0, np.empty(1024), np.empty(1024, dtype=np.int64)
+    count, begins, intervals, mark = 0, np.empty(1024), np.empty(1024, dtype=np.int64), 0
     for k in range(len(course.edges) - 1):
         length, since = course.edges[k + 1] - course.edges[k], 0.0
         while since < length:
@@ -193,8 +196,18 @@ def lay_edges(oscillators: Oscillators, course: Course, allowed: float) -> tuple
             begins[count], intervals[count] = since, k
             count += 1
             step = _step(oscillators, course, k, since, allowed)
-            left = length - since
-            since = length if step >= left else since + (0.5 * left if 2.0 * step > left else step)
+            left, last = length - since, since
+            if step >= left:
+                since = length
+                continue
+            while mark < len(marks) and marks[mark] - course.edges[k] <= since + step:
+                last = max(last, marks[mark] - course.edges[k])
+                mark += 1
+            if last > since + MERGED * length:
+                since = last
+            else:
+                left = min(left, marks[mark] - course.edges[k] - since) if mark < len(marks) else left
+                since += 0.5 * left if 2.0 * step > left else step
     return begins[:count].copy(), intervals[:count].copy()
 
 

@@ -50,7 +50,7 @@ class Membrane:
             element = np.einsum("kni,kn->ki", samples.operator, samples.weighted(0.5 * square), optimize=True)
             np.add.at(t, self.dofs[samples.triangle], element)
             if self.law is not None:
-                beyond += 0.125 * float((samples.weighted(square) * self._by_law(square)).sum())
+                beyond += 0.125 * float((samples.weighted(square) * self.by_law(square)).sum())
         t = self.reduce(t)
         m = -self.sign * self.solve(t)
         return m, 0.5 * float(m @ t) + beyond
@@ -62,7 +62,7 @@ class Membrane:
     def force(self, samples: Samples, everything: FloatArray, p: FloatArray) -> FloatArray:
         """The membrane force (k, 3 n), from all unknowns and the plate's slopes p (k, 2 n)."""
         force = self.linear_force(samples, everything[:, None])[..., 0]
-        return np.asarray(force if self.law is None else force + 0.5 * self._by_law(squares(p)))
+        return np.asarray(force if self.law is None else force + 0.5 * self.by_law(squares(p)))
 
     def stiffening(self, p: FloatArray) -> FloatArray:
         """What adds to the force in the energy's second derivative: B (k, 3 n) with q.B q = (p q) : A : (p q)."""
@@ -74,8 +74,8 @@ class Membrane:
         yy = A[1, 1] * x * x + 2 * A[1, 2] * x * y + A[2, 2] * y * y
         return np.concatenate([xx, xy, yy], axis=1)
 
-    def _by_law(self, strain: FloatArray) -> FloatArray:
-        """A times stacked strains (k, 3 n)."""
+    def by_law(self, strain: FloatArray) -> FloatArray:
+        """A times stacked strains (k, 3 n, ...)."""
         assert self.law is not None
         return np.concatenate(
             [sum(a * part for a, part in zip(row, thirds(strain), strict=True)) for row in self.law], axis=1

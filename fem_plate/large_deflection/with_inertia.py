@@ -106,17 +106,11 @@ def _forces_by_law(discrete: DiscretePlate, at: list[FloatArray], pairs: Iterato
     membrane = discrete.membrane
     found = np.zeros((sum(3 * s.weights.size for s in membrane.samples), 0))
     for i, j, weights in pairs:
-        strains = stacked([_by_law(membrane, _products(p[:, :, i], p[:, :, j])) for p in at])
+        strains = stacked([membrane.by_law(_products(p[:, :, i], p[:, :, j])) for p in at])
         forces = _forces(membrane, _answers(membrane, at, i, j)) + strains
         more = np.concatenate([found, forces * weights], axis=1)
         found = more @ _strongest(force_products(discrete, membrane, more), least)
     return found / np.sqrt(np.diag(force_products(discrete, membrane, found)))
-
-
-def _by_law(membrane: Membrane, strains: FloatArray) -> FloatArray:
-    """The forces (k, 3 n, c) of strains."""
-    thirds = strains.reshape(len(strains), 3, -1, strains.shape[2])
-    return np.einsum("ab,kbnc->kanc", membrane.law, thirds).reshape(strains.shape)
 
 
 def _slopes(discrete: DiscretePlate, membrane: Membrane, columns: Columns) -> list[FloatArray]:

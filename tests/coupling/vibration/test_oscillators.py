@@ -5,9 +5,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import coupling.vibration.motion as motion_module
+from coupling.stretch import breakpoints
 from coupling.vibration import Oscillators, modal_motion
 from coupling.vibration.oscillators import lay_edges
 from particle import Drive
+from particle.drives import drive_table
 
 F = 1e3  # Hz
 OSCILLATORS = Oscillators(
@@ -98,10 +100,35 @@ def test_pieces_are_off_by_what_is_allowed_and_not_by_much_less(drives, allowed)
     assert np.abs(heights - truth[0]).max() < 1.05 * allowed / OSCILLATORS.omega.min() ** 2
 
 
+@pytest.mark.parametrize(
+    ("drives", "beside", "since"),
+    [
+        (STROKES, Drive(1e-6, 40 * F), 0.0),
+        ((Drive(1e-6, F), Drive(0.0, F)), Drive(1e-6, 40 * F, delay=60.3 / F), 61 / F),
+    ],
+    ids=["from the start", "where both repeat"],
+)
+def test_pieces_begin_where_those_of_another_drive_do(drives, beside, since):
+    damped = OSCILLATORS._replace(damping=np.full(3, 0.1))
+    motion = modal_motion(damped, drives, 3e-3 if since == 0.0 else 0.1)
+    assert (motion.loop >= 0) == (since > 0.0)
+    times = since + np.random.default_rng(0).uniform(0, 1 / F, 2000)
+    truth = motion.evaluate(times)
+    allowed = 1e-5 * np.abs(truth[2]).max()
+    own, found = motion.modal_drives(allowed), motion.modal_drives(allowed, beside)
+    assert (
+        max(np.abs(drive.evaluate(times)[2] - truth[2, :, j]).max() for j, drive in enumerate(found)) < 1.05 * allowed
+    )
+    counts = [len(breakpoints(drive_table([pieces[0], beside]), since, since + 1 / F)) for pieces in (own, found)]
+    marks = len(breakpoints(drive_table([beside]), since, since + 1 / F))
+    print(f"{marks} breakpoints, with pieces {counts[0]}, with pieces that begin there {counts[1]}")
+    assert counts[1] < 0.8 * counts[0]
+
+
 def test_pieces_grow_longer_as_the_ringing_decays():
     damped = OSCILLATORS._replace(damping=np.full(3, 0.1))
     motion = modal_motion(damped, [Drive(1e-6, F, cycles=1), Drive(0.0, F)], 0.1)
-    begins, intervals = lay_edges(motion.oscillators, motion.course, 1e-5 * motion.largest_acceleration())
+    begins, intervals = lay_edges(motion.oscillators, motion.course, 1e-5 * motion.largest_acceleration(), np.zeros(0))
     last = begins[intervals == intervals[-1]]
     lengths = np.diff(last)
     assert lengths[-8:].min() > 2 * lengths[:8].max()

@@ -76,8 +76,10 @@ def test_a_start_does_not_change_a_solution(discrete):
     assert near.forces == pytest.approx(far.forces, rel=1e-8)
 
 
-def test_with_modes_the_plate_stretches_as_the_whole_plate_in_the_same_shape(discrete):
+@pytest.mark.parametrize("membrane", ["airy", "plane-stress"])
+def test_with_modes_the_plate_stretches_as_the_whole_plate_in_the_same_shape(membrane):
     """Not only in equilibrium: for any strokes, swings of modes and corrections up to the amplitudes it is made for."""
+    discrete = Plate(disc(1.0, 0.5), UNIT).large_deflection(POINTS, membrane=membrane).discrete(0, 0)
     reduction = reduce(discrete, STROKES, 1e-3, corrections_of)
     shapes = HeldShapes(reduction, np.array(POINTS), np.full(len(POINTS), np.inf))
     modes = mode_columns(discrete, shapes.springs, Excitation(shapes, 1.0, UNIT.rigidity).modes())
