@@ -41,6 +41,21 @@ def load(array: FloatArray, first: int) -> Any:
     return array[first : first + LANES].copy()
 
 
+def load_some(array: FloatArray, first: int, count: int) -> Any:
+    """As `load`, with 0 in place of all but the first `count` of them."""
+    return np.where(np.arange(LANES) < count, load(array, first), 0.0)
+
+
+def lanes_of(a: float, b: float, c: float, d: float) -> Any:
+    """Lanes of these numbers."""
+    return np.array([a, b, c, d])
+
+
+def total(x: Any) -> float:
+    """The sum of lanes."""
+    return float((x[0] + x[2]) + (x[1] + x[3]))
+
+
 def store(array: FloatArray, first: int, value: Any) -> None:
     """Lanes into an array (n,) from `first` on."""
     array[first : first + LANES] = value
@@ -77,14 +92,21 @@ def _vector(context: Any, builder: Any, kind: Any, value: Any, wanted: Any) -> A
     return builder.shuffle_vector(builder.insert_element(none, number, first), none, ir.Constant(_ORDER, [0] * LANES))
 
 
-def _define(function: Callable[..., Any], cases: list[tuple[Any, ...]], build: Callable[..., Any]) -> None:
-    """Compile a function for `cases` of its arguments' types: build(builder, *values) is its code."""
-    signatures = [signature(lanes if lanes in case else types.float64, *case) for case in cases]
+def _define(
+    function: Callable[..., Any], cases: list[tuple[Any, ...]], build: Callable[..., Any], result: Any = None
+) -> None:
+    """Compile a function for `cases` of its arguments' types: build(builder, *values) is its code.
+
+    result: its type, by default that of the arguments, which are made alike.
+    """
+    signatures = [signature(result or (lanes if lanes in case else types.float64), *case) for case in cases]
     infer_global(function)(type("_Typed", (ConcreteTemplate,), {"cases": signatures}))
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        kinds = zip(sig.args, args, strict=True)
-        return build(builder, *(_vector(context, builder, kind, value, sig.return_type) for kind, value in kinds))
+        if result is None:
+            kinds = zip(sig.args, args, strict=True)
+            args = [_vector(context, builder, kind, value, sig.return_type) for kind, value in kinds]
+        return build(builder, *args)
 
     for case in cases:
         lower_builtin(function, *case)(lower)
@@ -108,6 +130,19 @@ def _where_zero(builder: Any, x: Any, value: Any) -> Any:
     return builder.select(builder.fcmp_ordered("==", x, _zero(x)), value, _zero(x))
 
 
+def _lanes_of(builder: Any, *numbers: Any) -> Any:
+    found = ir.Constant(VECTOR, ir.Undefined)
+    for k, number in enumerate(numbers):
+        found = builder.insert_element(found, number, ir.Constant(ir.IntType(32), k))
+    return found
+
+
+def _total(builder: Any, x: Any) -> Any:
+    for order in ([2, 3, 2, 3], [1, 1, 1, 1]):
+        x = builder.fadd(x, builder.shuffle_vector(x, x, ir.Constant(_ORDER, order)))
+    return builder.extract_element(x, ir.Constant(ir.IntType(32), 0))
+
+
 def _zero(x: Any) -> Any:
     return ir.Constant(x.type, [0.0] * LANES if x.type == VECTOR else 0.0)
 
@@ -125,6 +160,8 @@ _define(nought, [(lanes,), (types.float64,)], lambda builder, x: _zero(x))
 _define(log, [(lanes,), (types.float64,)], _log)
 _define(at_least, [(lanes, types.float64), (types.float64, types.float64)], _at_least)
 _define(where_zero, [(lanes, lanes), (types.float64, types.float64)], _where_zero)
+_define(lanes_of, [(types.float64,) * LANES], _lanes_of, lanes)
+_define(total, [(lanes,)], _total, types.float64)
 
 
 def _place(context: Any, builder: Any, kind: Any, array: Any, first: Any) -> Any:
@@ -142,6 +179,22 @@ class _Load(AbstractTemplate):  # type: ignore[misc]
 @lower_builtin(load, types.Array, types.intp)  # type: ignore[untyped-decorator]
 def _load(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return builder.load(_place(context, builder, sig.args[0], *args), align=8)
+
+
+@infer_global(load_some)
+class _LoadSome(AbstractTemplate):  # type: ignore[misc]
+    def generic(self, args: Any, kws: Any) -> Any:
+        return signature(lanes, args[0], types.intp, types.intp) if args[0].layout == "C" else None
+
+
+@lower_builtin(load_some, types.Array, types.intp, types.intp)  # type: ignore[untyped-decorator]
+def _load_some(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    found = builder.load(_place(context, builder, sig.args[0], *args[:2]), align=8)
+    counts, none = ir.VectorType(args[2].type, LANES), ir.Constant(ir.IntType(32), 0)
+    one = builder.insert_element(ir.Constant(counts, ir.Undefined), args[2], none)
+    count = builder.shuffle_vector(one, ir.Constant(counts, ir.Undefined), ir.Constant(_ORDER, [0] * LANES))
+    within = builder.icmp_signed("<", ir.Constant(counts, list(range(LANES))), count)
+    return builder.select(within, found, _zero(found))
 
 
 @infer_global(store)

@@ -24,6 +24,7 @@ from particle.surface import (
     cell_at,
     enter,
     height_here,
+    jet,
     new_local,
     plane_jet,
     prepare,
@@ -188,10 +189,10 @@ def fill_averages(
         rho_1, rho_2 = load(places[0], first), load(places[1], first)
         w, w_1, w_2 = load(places[2], first), load(places[3], first), load(places[4], first)
         r_x, r_y = cosine * rho_1 - sine * rho_2, sine * rho_1 + cosine * rho_2
-        _add(sums, 2, w, w_1, w_2, r_x, r_y, height_here(local, x + r_x, y + r_y))
+        _add(sums, 2, w, w_1, w_2, r_x, r_y, height_here(local, x + r_x, y + r_y, jet))
         if stretches:
             for along in range(2):
-                _add(sums, along, w, w_1, w_2, r_x, r_y, plane_jet(local, along, x + r_x, y + r_y))
+                _add(sums, along, w, w_1, w_2, r_x, r_y, plane_jet(local, along, x + r_x, y + r_y, jet))
     for i in range(ROWS):
         for j in range(PLACE):
             for lane in range(LANES):

@@ -23,7 +23,7 @@ from particle.surface.cells import (
     cells_of,
     columns_of,
 )
-from particle.surface.jet import Jet
+from particle.surface.jet import Jet, jet
 from particle.surface.local import (
     Frame,
     LocalSurface,

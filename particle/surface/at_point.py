@@ -12,7 +12,7 @@ from particle.drives import ORDER, evaluate_piece
 from particle.jit import device_no_arrays, jit, spliced
 from particle.lanes import at_least, log, where_zero
 from particle.surface.cells import UNBUILT
-from particle.surface.jet import Jet, at_time, fill_quintics, jet
+from particle.surface.jet import Jet, at_time, fill_quintics, point_jet
 from particle.surface.local import Frame, LocalSurface
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
@@ -85,15 +85,16 @@ def set_time(local: LocalSurface, time: float) -> None:
 
 
 @spliced
-def height_here(local: LocalSurface, x: Any, y: Any) -> Jet:
+def height_here(local: LocalSurface, x: Any, y: Any, jet_of: Any) -> Jet:
     """w and its derivatives at a point [m] of the prepared cell, or at lanes of such, and the time of `set_time`.
 
     w = sum c_ij u^i v^j + sum f_k |X - X_k|^2 ln |X - X_k|, lengths in the logarithms over the surface's size.
+    jet_of: `point_jet`, or for lanes `jet`.
     """
     frame: Frame = local.frame[0]
     size = frame.surface_size
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
-    f = jet(local.at, frame.monomials, frame.degree, u, v, frame.half_x, frame.half_y)
+    f = jet_of(local.at, frame.monomials, frame.degree, u, v, frame.half_x, frame.half_y)
     w, w_t, w_tt, g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.f, f.t, f.tt, f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
     h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
     t_xxx, t_xxy, t_xyy, t_yyy = f.xxx, f.xxy, f.xyy, f.yyy
@@ -146,7 +147,7 @@ def surface_here(local: LocalSurface, x: float, y: float, time: float) -> Surfac
     """As `surface_at`, compiled into its caller."""
     frame: Frame = local.frame[0]
     set_time(local, time)
-    f = height_here(local, x, y)
+    f = height_here(local, x, y, point_jet)
     g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
     h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
     t_xxx, t_xxy, t_xyy, t_yyy = f.xxx, f.xxy, f.xyy, f.yyy
@@ -158,7 +159,7 @@ def surface_here(local: LocalSurface, x: float, y: float, time: float) -> Surfac
     x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
     x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
     if frame.in_plane > 0:
-        along_x, along_y = plane_jet(local, 0, x, y), plane_jet(local, 1, x, y)
+        along_x, along_y = plane_jet(local, 0, x, y, point_jet), plane_jet(local, 1, x, y, point_jet)
         x_x, x_y, y_x, y_y = 1 + along_x.x, along_x.y, along_y.x, 1 + along_y.y
         x_xt, x_yt, y_xt, y_yt = along_x.xt, along_x.yt, along_y.xt, along_y.yt
         x_xx, x_xy, x_yy, y_xx, y_xy, y_yy = along_x.xx, along_x.xy, along_x.yy, along_y.xx, along_y.xy, along_y.yy
@@ -182,12 +183,12 @@ def surface_here(local: LocalSurface, x: float, y: float, time: float) -> Surfac
 
 
 @spliced
-def plane_jet(local: LocalSurface, along: int, x: Any, y: Any) -> Jet:
+def plane_jet(local: LocalSurface, along: int, x: Any, y: Any, jet_of: Any) -> Jet:
     """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded, as `height_here`."""
     frame: Frame = local.frame[0]
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
     end = (along + 1) * frame.plane_monomials
-    return jet(local.plane_at, end, frame.plane_degree, u, v, frame.half_x, frame.half_y)
+    return jet_of(local.plane_at, end, frame.plane_degree, u, v, frame.half_x, frame.half_y)
 
 
 @spliced
@@ -259,7 +260,7 @@ def sample_surface(
             out[n, k] = 0.0
         if local.frame[0].in_plane > 0:
             for along in range(2):
-                u, k = plane_jet(local, along, x, y), POINT_SIZE + 5 * along
+                u, k = plane_jet(local, along, x, y, point_jet), POINT_SIZE + 5 * along
                 out[n, k], out[n, k + 1], out[n, k + 2], out[n, k + 3], out[n, k + 4] = u.f, u.t, u.tt, u.xtt, u.ytt
     return out, missing
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from particle.drives import ORDER, quintic_at
 from particle.jit import device_no_arrays, spliced
-from particle.lanes import LANES, load, nought, store
+from particle.lanes import LANES, lanes_of, load, load_some, nought, store, total
 from particle.types import FloatArray
 
 
@@ -98,6 +98,55 @@ def jet(at: FloatArray, end: int, degree: int, u: Any, v: Any, half_x: float, ha
         *(2 * w_uut / half_x**2, w_uvt / (half_x * half_y), 2 * w_vvt / half_y**2),
         *(6 * w_uuu / half_x**3, 2 * w_uuv / (half_x**2 * half_y)),
         *(2 * w_uvv / (half_x * half_y**2), 6 * w_vvv / half_y**3),
+    )
+
+
+@spliced
+def point_jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
+    """As `jet` at one place, of numbers; lanes are powers of v.
+
+    The array must go on after `end`, by as many as there are lanes.
+    """
+    v_2 = v * v
+    v_3, v_4 = v_2 * v, v_2 * v_2
+    # Powers of v with their derivatives: the n-th over n!.
+    p, p_v = lanes_of(1.0, v, v_2, v_3), lanes_of(0.0, 1.0, 2.0 * v, 3.0 * v_2)
+    p_vv, p_vvv = lanes_of(0.0, 0.0, 1.0, 3.0 * v), lanes_of(0.0, 0.0, 0.0, 1.0)
+    zero = nought(p)
+    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = zero
+    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = zero
+    for first in range(0, degree + 1, LANES):
+        a = a_u = a_uu = a_uuu = b = b_u = b_uu = c = c_u = zero
+        m = end - first * (first + 1) // 2  # behind u^i of which there are higher powers of v
+        for i in range(degree - first, -1, -1):
+            m -= degree + 1 - i
+            count = degree + 1 - i - first
+            a_uuu = a_uuu * u + a_uu
+            a_uu = a_uu * u + a_u
+            a_u = a_u * u + a
+            a = a * u + load_some(at[0], m + first, count)
+            b_uu = b_uu * u + b_u
+            b_u = b_u * u + b
+            b = b * u + load_some(at[1], m + first, count)
+            c_u = c_u * u + c
+            c = c * u + load_some(at[2], m + first, count)
+        w, w_v, w_vv, w_vvv = w + a * p, w_v + a * p_v, w_vv + a * p_vv, w_vvv + a * p_vvv
+        w_u, w_uv, w_uvv = w_u + a_u * p, w_uv + a_u * p_v, w_uvv + a_u * p_vv
+        w_uu, w_uuv, w_uuu = w_uu + a_uu * p, w_uuv + a_uu * p_v, w_uuu + a_uuu * p
+        w_t, w_vt, w_vvt = w_t + b * p, w_vt + b * p_v, w_vvt + b * p_vv
+        w_ut, w_uvt, w_uut = w_ut + b_u * p, w_uvt + b_u * p_v, w_uut + b_uu * p
+        w_tt, w_vtt, w_utt = w_tt + c * p, w_vtt + c * p_v, w_utt + c_u * p
+        p_vvv = p_vvv * v_4 + p_vv * (4.0 * v_3) + p_v * (6.0 * v_2) + p * (4.0 * v)
+        p_vv = p_vv * v_4 + p_v * (4.0 * v_3) + p * (6.0 * v_2)
+        p_v, p = p_v * v_4 + p * (4.0 * v_3), p * v_4
+    x, y = 1 / half_x, 1 / half_y
+    return Jet(
+        *(total(w), total(w_t), total(w_tt), total(w_u) * x, total(w_v) * y, total(w_ut) * x, total(w_vt) * y),
+        *(2 * total(w_uu) * (x * x), total(w_uv) * (x * y), 2 * total(w_vv) * (y * y)),
+        *(total(w_utt) * x, total(w_vtt) * y),
+        *(2 * total(w_uut) * (x * x), total(w_uvt) * (x * y), 2 * total(w_vvt) * (y * y)),
+        *(6 * total(w_uuu) * (x * x * x), 2 * total(w_uuv) * (x * x * y)),
+        *(2 * total(w_uvv) * (x * y * y), 6 * total(w_vvv) * (y * y * y)),
     )
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.jit import device_no_arrays, jit_no_arrays
+from particle.lanes import LANES
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells, Grid
 from particle.surface.record import BASE, Surface
@@ -71,11 +72,11 @@ class LocalSurface(NamedTuple):
     clock: NDArray[Clock]  # (D,)
     pieces: FloatArray  # (D, 6) m, the quintic of each drive
     smooth: FloatArray  # (6, M + J) m, the cell's polynomial; then the strengths of its logarithms
-    at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
+    at: FloatArray  # (3, M + J + LANES) m, these and their first two derivatives in time, at one time; then room
     sources: FloatArray  # (J, 2) m, where the logarithms are
     base: FloatArray  # (6, 3) m and rad, where the base is along x and y, and how far it is turned
     plane: FloatArray  # (6, 2 M) m, the cell's motion in its plane: polynomials along x, then along y
-    plane_at: FloatArray  # (3, 2 M) m, as `at`
+    plane_at: FloatArray  # (3, 2 M + LANES) m, as `at`
     ahead: FloatArray  # (6,) m, a drive's quintic at the end of the span
 
 
@@ -89,11 +90,11 @@ def new_local(surface: Surface) -> LocalSurface:
         clock=new_records(Clock, drives),
         pieces=np.zeros((drives, ORDER)),
         smooth=np.zeros((ORDER, width)),
-        at=np.zeros((3, width)),
+        at=np.zeros((3, width + LANES)),
         sources=np.zeros((grid.most_near, 2)),
         base=np.zeros((ORDER, BASE)),
         plane=np.zeros((ORDER, plane)),
-        plane_at=np.zeros((3, plane)),
+        plane_at=np.zeros((3, plane + LANES)),
         ahead=np.zeros(ORDER),
     )
     prepare(surface, local)

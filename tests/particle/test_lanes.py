@@ -6,7 +6,7 @@ from numpy.polynomial.polynomial import polyder, polyval2d
 
 from particle.jit import jit_no_arrays, spliced
 from particle.lanes import LANES, at_least, load, log, nought, store, where_zero
-from particle.surface.jet import jet
+from particle.surface.jet import Jet, jet, point_jet
 
 DEGREE = 4
 COUNT = (DEGREE + 1) * (DEGREE + 2) // 2
@@ -49,3 +49,23 @@ def test_lanes_are_numbers():
     total = polyval2d(x, y, matrix) + 2 * polyval2d(x, y, mixed) / (2.0 * 0.5) - polyval2d(x, y, third) / 0.5**3 / y
     wanted = -total * x + np.log(np.maximum(x * x, 0.25)) + np.where(x == y, 3.0, 0.0) - 1 / y
     assert lanes == pytest.approx(wanted, rel=1e-10)
+
+
+@jit_no_arrays
+def _jets(c, degree, count, u, v, by_lanes, by_numbers):
+    for k in range(len(u)):
+        one, other = point_jet(c, count, degree, u[k], v[k], 2.0, 0.5), jet(c, count, degree, u[k], v[k], 2.0, 0.5)
+        for i in range(len(one)):
+            by_lanes[k, i], by_numbers[k, i] = one[i], other[i]
+
+
+@pytest.mark.parametrize("degree", [0, 1, 2, 3, 4, 7, 8, 11])
+def test_at_one_place_lanes_are_powers(degree):
+    """Whatever stands behind the coefficients, such as those of logarithms."""
+    random, count = np.random.default_rng(5), (degree + 1) * (degree + 2) // 2
+    c = np.full((3, count + LANES), np.nan)
+    c[:, :count] = random.normal(size=(3, count))
+    u, v = random.uniform(-1.2, 1.2, (2, 5))
+    by_lanes, by_numbers = np.empty((2, 5, len(Jet._fields)))
+    _jets(c, degree, count, u, v, by_lanes, by_numbers)
+    np.testing.assert_allclose(by_lanes, by_numbers, rtol=0, atol=1e-13 * np.abs(by_numbers).max())
