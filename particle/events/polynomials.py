@@ -41,13 +41,13 @@ def quintic_to_bernstein(c: FloatArray, b: FloatArray) -> None:
 
 
 @device_no_arrays
-def halve(right: FloatArray, left: FloatArray) -> None:
-    """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
-    n = len(right) - 1
+def divide(right: FloatArray, left: FloatArray, share: float) -> None:
+    """de Casteljau at a share: `right` holds the whole polynomial before and its right part after."""
+    n, rest = len(right) - 1, 1.0 - share
     for k in range(n + 1):
         left[k] = right[0]
         for i in range(n - k):
-            right[i] = 0.5 * (right[i] + right[i + 1])
+            right[i] = rest * right[i] + share * right[i + 1]
 
 
 @inlined
@@ -69,7 +69,7 @@ def first_negative(b: FloatArray) -> float:
             low[top + 1] = low[top]
             low[top] += half
             width[top] = width[top + 1] = half
-            halve(pieces[top], pieces[top + 1])
+            divide(pieces[top], pieces[top + 1], 0.5)
             top += 1
     return math.inf
 

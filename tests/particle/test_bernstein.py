@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from particle.events.polynomials import MAX_HALVINGS, first_negative, halve, quintic_to_bernstein, to_bernstein
+from particle.events.polynomials import MAX_HALVINGS, divide, first_negative, quintic_to_bernstein, to_bernstein
 
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)
 ROUNDING = 64 * np.finfo(float).eps
@@ -46,13 +46,13 @@ def test_a_polynomial_keeps_its_values_in_bernstein_form_of_any_degree(c, more, 
 
 
 @settings(deadline=None)
-@given(st.lists(NUMBERS, min_size=1, max_size=17), st.floats(0, 1))
-def test_the_halves_are_the_polynomial_on_either_half(b, s):
+@given(st.lists(NUMBERS, min_size=1, max_size=17), st.floats(0, 1), st.floats(0, 1))
+def test_the_parts_are_the_polynomial_on_either_side_of_a_division(b, s, share):
     right, left = np.array(b), np.empty(len(b))
-    halve(right, left)
-    t = Fraction(s)
-    assert float(exact(left, t)) == pytest.approx(float(exact(b, t / 2)), abs=1e-14)
-    assert float(exact(right, t)) == pytest.approx(float(exact(b, (1 + t) / 2)), abs=1e-14)
+    divide(right, left, share)
+    t, at = Fraction(s), Fraction(share)
+    assert float(exact(left, t)) == pytest.approx(float(exact(b, at * t)), abs=1e-14)
+    assert float(exact(right, t)) == pytest.approx(float(exact(b, at + (1 - at) * t)), abs=1e-14)
     assert right[-1] == b[-1] and left[0] == b[0]
 
 

@@ -2,7 +2,7 @@
 
 At a fixed place the surface is polynomial in time, and so is what friction must resist. `stick_bound` proves that the
 part stays over a subinterval, or else, once that is narrow, the Bernstein coefficients of `stick_margin` do. A
-subinterval without a proof is halved, the earlier half first.
+subinterval without a proof is divided, the earlier part first: in halves, or next to where the part slips.
 """
 
 from __future__ import annotations
@@ -14,10 +14,17 @@ import numpy as np
 
 from particle.drives import ORDER, copy_rows
 from particle.events.mechanics import Part
-from particle.events.polynomials import MAX_HALVINGS, halve, narrow
+from particle.events.polynomials import MAX_HALVINGS, divide, narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
-from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
+from particle.events.rest.stick_margin import (
+    DEGREE,
+    NARROW,
+    best_division,
+    fill_margin,
+    holds_at_end,
+    is_safe_by_margin,
+)
 from particle.events.rest.stick_search import leaves_rest_by_search
 from particle.friction import LOCAL
 from particle.group import grouped
@@ -25,6 +32,7 @@ from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, motion_at
 from particle.types import FloatArray
 
+ROOM = 2 * MAX_HALVINGS + 2  # subintervals: so deep are halvings alone below MAX_HALVINGS other divisions
 SLACK = 1e-15  # of the largest squared force in the span
 
 
@@ -32,9 +40,9 @@ SLACK = 1e-15  # of the largest squared force in the span
 class Rest(NamedTuple):
     """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
 
-    low: FloatArray  # (MAX_HALVINGS + 2,)
-    width: FloatArray  # (MAX_HALVINGS + 2,)
-    margins: FloatArray  # (MAX_HALVINGS + 2, 2, DEGREE + 1), of `stick_margin`, from the narrow subinterval on
+    low: FloatArray  # (ROOM,)
+    width: FloatArray  # (ROOM,)
+    margins: FloatArray  # (ROOM, 2, DEGREE + 1), of `stick_margin`, from the narrow subinterval on
     motion: FloatArray  # (6, 6), w at the place, w_x, w_y, w_xx, w_xy, w_yy, as polynomials of the share of the time
     plane: FloatArray  # (2, 6, 6), the same of u + base along x and along y
     part_motion: FloatArray  # (6, 6), these over a part of the time
@@ -45,9 +53,9 @@ class Rest(NamedTuple):
 
 def new_rest() -> Rest:
     return Rest(
-        np.zeros(MAX_HALVINGS + 2),
-        np.zeros(MAX_HALVINGS + 2),
-        np.zeros((MAX_HALVINGS + 2, 2, DEGREE + 1)),
+        np.zeros(ROOM),
+        np.zeros(ROOM),
+        np.zeros((ROOM, 2, DEGREE + 1)),
         np.zeros((6, ORDER)),
         np.zeros((2, 6, ORDER)),
         np.zeros((6, ORDER)),
@@ -97,11 +105,14 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
         if proved:
             top -= 1
             continue
-        rest.low[top + 1], rest.low[top] = rest.low[top], rest.low[top] + 0.5 * width
-        rest.width[top] = rest.width[top + 1] = 0.5 * width
+        share = 0.5
+        if first >= 0 and top < MAX_HALVINGS:
+            share = best_division(part, rest.margins[top - first], slack)
+        rest.low[top + 1], rest.low[top] = rest.low[top], rest.low[top] + share * width
+        rest.width[top], rest.width[top + 1] = (1.0 - share) * width, share * width
         if first >= 0:
             for row in range(rest.margins.shape[1]):
-                halve(rest.margins[top - first, row], rest.margins[top - first + 1, row])
+                divide(rest.margins[top - first, row], rest.margins[top - first + 1, row], share)
         top += 1
     return math.inf
 
