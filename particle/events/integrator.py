@@ -13,7 +13,7 @@ import math
 from particle.events.flight import MIN_JUMP, cross_jump, fly, take_off, velocity_jump
 from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, grip_at, margin, pull, rest_pull, slip_speed
 from particle.events.memory import Memory
-from particle.events.record import PathRecord, Row, fill_row, last_row, note, with_room, write
+from particle.events.record import PathRecord, Row, fill_row, has_room, last_row, note, with_room, write
 from particle.events.request import Request
 from particle.events.rest import leaves_rest
 from particle.events.sliding import bridge, first_mode, slide
@@ -39,20 +39,18 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
     now: Now = memory.now[0]
     _begin(request, memory)
     while now.verdict == Verdict.GOES_ON and now.time < request.until:
-        record = with_room(record)
-        _enter(surface, request, memory, record)
-        if now.verdict != Verdict.GOES_ON:
-            break
-        before = now.mode
-        if before == Mode.RESTING:
-            event = _rest(request, memory)
-        elif before == Mode.FLYING:
-            event = _fly(surface, request, memory)
-        else:
-            event = slide(surface, request, pairs, memory)
-        _note(request, memory, record, before, event)
         if request.only_rests and now.mode != Mode.RESTING:
             break
+        record = with_room(record)
+        if _slides(now.mode):
+            _slide_on(surface, request, pairs, memory, record)
+            continue
+        _enter(surface, request, memory, record)
+        before = now.mode
+        if now.verdict != Verdict.GOES_ON or _slides(before):
+            continue
+        event = _rest(request, memory) if before == Mode.RESTING else _fly(surface, request, memory)
+        _note(request, memory, record, before, event)
     _note_end(memory, record)
     return record
 
@@ -65,6 +63,22 @@ def _begin(request: Request, memory: Memory) -> None:
         memory.motion_numbers[0, k] = request.start[k]
     now.time = now.span_end = request.begin
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
+
+
+@inlined
+def _slides(mode: int) -> bool:
+    return mode == Mode.SLIDING or mode == Mode.MANIFOLD
+
+
+@device_no_arrays
+def _slide_on(surface: Surface, request: Request, pairs: Pairs, memory: Memory, record: PathRecord) -> None:
+    """Slides on while there is room for a row; here, as `march` counts references to all that it touches."""
+    now: Now = memory.now[0]
+    while has_room(record) and now.verdict == Verdict.GOES_ON and now.time < request.until and _slides(now.mode):
+        _enter(surface, request, memory, record)
+        before = now.mode
+        if now.verdict == Verdict.GOES_ON and _slides(before):
+            _note(request, memory, record, before, slide(surface, request, pairs, memory))
 
 
 @device_no_arrays

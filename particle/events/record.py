@@ -12,7 +12,7 @@ from particle.events.mechanics import Motion, Part, energy, grip_at, heading, pu
 from particle.jit import device, device_no_arrays
 from particle.modes import Mode
 from particle.records import Record, new_records, record_type
-from particle.surface import LocalSurface, surface_at
+from particle.surface import LocalSurface, surface_here
 
 
 class Row(Record):
@@ -80,20 +80,29 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
     row.time, row.x, row.y, row.mode = time, x, y, mode
     row.work, row.dissipated = motion.work, motion.dissipated
-    f = surface_at(local, x, y, time)
+    f = surface_here(local, x, y, time)
     if mode == Mode.FLYING:
         row.v_x, row.v_y, row.z, row.v_z, row.load, row.friction = v_x, v_y, motion.z, motion.v_z, 0.0, 0.0
         row.kinetic, row.potential = energy(f, x, y, v_x, v_y, motion.z, motion.v_z, part)
         return
-    a = rest_pull(f, part)
     if mode == Mode.MANIFOLD:
-        v_x, v_y = velocity(f, part, motion.v_x, heading(local, part, time, x, y, motion.v_x, f, a))
+        v_x, v_y = velocity(f, part, motion.v_x, heading(local, part, time, x, y, motion.v_x, f, rest_pull(f, part)))
     elif mode == Mode.RESTING:
         v_x = v_y = 0.0
     row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, rising(f, v_x, v_y)
     row.load = pull(f, v_x, v_y, part).normal
-    row.friction = part.mass * a.demand if mode == Mode.RESTING else grip_at(f, part, row.load).limit
+    if mode == Mode.RESTING:
+        row.friction = part.mass * rest_pull(f, part).demand
+    else:
+        row.friction = grip_at(f, part, row.load).limit
     row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)
+
+
+@device_no_arrays
+def has_room(record: PathRecord) -> bool:
+    """Whether the record has room for what one turn of a march adds."""
+    lengths = record.lengths[0]
+    return bool(lengths.rows + ROOM <= len(record.rows) and lengths.events + ROOM <= len(record.events))
 
 
 @device

@@ -9,6 +9,7 @@ from particle.events.memory import Memory, Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
 from particle.jit import device_no_arrays, inlined, spliced
+from particle.lanes import LANES, lanes_of, load, load_some, nought, total
 from particle.modes import Mode
 from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_here, within_cell
 
@@ -60,11 +61,11 @@ def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: floa
             return False
         moment = time + pair.c[k] * h
         f = surface_here(local, stage.x, stage.y, moment)
-        load = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
+        normal = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = memory.now[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
         gap = gap if gap > 0.0 else gap_at(surface, local, stage.x, stage.y)
-        step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
+        step.loads[k], step.margins[k] = normal, margin(local, part, normal, gap)
     step.end[0] = stage
     return True
 
@@ -76,15 +77,16 @@ def step_error(pair: Tableau, step: Step, h: float, lasting: float, force: float
     An error of velocity counts as what it moves the part by in `lasting` [s], one of the ledger as the way on which
     `force` [N] does that work.
     """
-    fifth = third = 0.0
-    for i in range(INTEGRATED):
-        e = d = 0.0
-        for k in range(len(pair.c)):
-            e += pair.error[0, k] * step.rate_numbers[k, i]
-            d += pair.error[1, k] * step.rate_numbers[k, i]
-        weight = h / force if i >= 4 else (h * lasting if i >= 2 else h)
-        fifth += (weight * e) ** 2
-        third += (weight * d) ** 2
+    rates, error = step.rate_numbers, pair.error
+    zero = nought(load(rates[0], 0))
+    e = e_2 = d = d_2 = zero
+    for k in range(len(pair.c)):
+        first, second = load(rates[k], 0), load_some(rates[k], LANES, INTEGRATED - LANES)
+        e, e_2 = e + first * error[0, k], e_2 + second * error[0, k]
+        d, d_2 = d + first * error[1, k], d_2 + second * error[1, k]
+    weight, weight_2 = lanes_of(h, h, h * lasting, h * lasting), h / force
+    e, e_2, d, d_2 = e * weight, e_2 * weight_2, d * weight, d_2 * weight_2
+    fifth, third = total(e * e + e_2 * e_2), total(d * d + d_2 * d_2)
     if fifth == 0.0:
         return 0.0
     # Hairer's combination: the fifth-order estimate, damped by the third-order one.
@@ -98,9 +100,9 @@ def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
     The loads between them are those of a polynomial fitted to the stages'.
     """
     for k in range(len(pair.between)):
-        load = 0.0
+        normal = 0.0
         for j in range(len(pair.c)):
-            load += pair.blend[k, j] * step.loads[j]
-        if not -part.law.pull_off <= load <= part.law.largest_load:
+            normal += pair.blend[k, j] * step.loads[j]
+        if not -part.law.pull_off <= normal <= part.law.largest_load:
             return float(pair.between[k])
     return 1.0
