@@ -97,7 +97,7 @@ def _define(
 ) -> None:
     """Compile a function for `cases` of its arguments' types: build(builder, *values) is its code.
 
-    result: its type, by default that of the arguments, which are made alike.
+    result: the type of what it returns; by default arguments are made alike, and it is theirs.
     """
     signatures = [signature(result or (lanes if lanes in case else types.float64), *case) for case in cases]
     infer_global(function)(type("_Typed", (ConcreteTemplate,), {"cases": signatures}))

@@ -83,7 +83,7 @@ def ringing_of(forms: Forms, square: FloatArray, drag: FloatArray, mass: FloatAr
 
 
 def driven_by_powers(ringing: Ringing, pieces: FloatArray) -> Ringing:
-    """The same under drives s^0 to s^5 in place of N, which are pieces (N, 6) in these: fewer where there are many."""
+    """The plate under drives s^0 to s^5 instead of its N drives, whose pieces (N, 6) are sums of these powers."""
     m, forms = ringing.participation, ringing.forms
     count, modes = m.shape[1], np.eye(len(m))
     turn = np.block([[pieces.T, np.zeros((ORDER, len(m)))], [np.zeros((len(m), count)), modes]])

@@ -34,7 +34,7 @@ MAX_PASSES = 200  # to a steady state; more where damping is low
 MIN_DECAY = 40.0  # zeta omega t after which nothing is left of the start
 MERGED = 1e-12  # of a period: a breakpoint that is its end
 MIN_ACCELERATION = 1e-9  # of the largest acceleration: with all drives at rest, the plate rests, too
-FEW_DRIVES = ORDER  # more of them are replaced by the powers of time that their pieces are made of
+FEW_DRIVES = ORDER  # above so many the powers of time stand for drives
 MAX_PIECES = 20_000_000  # of all shapes: about 2 GB
 
 
@@ -92,8 +92,8 @@ class _Walker:
     def __init__(self, ringing: Ringing, drives: Sequence[AnyDrive], limits: FloatArray) -> None:
         self._ringing, self._drives, self._limits = ringing, drives, limits
         self._pair, self._table = tableau(8), drive_table(drives)
-        many = len(drives) > FEW_DRIVES
-        self._bench = new_bench(driven_by_powers(ringing, np.zeros((len(drives), ORDER))) if many else ringing)
+        self._many = len(drives) > FEW_DRIVES
+        self._bench = new_bench(driven_by_powers(ringing, np.zeros((len(drives), ORDER))) if self._many else ringing)
         self._fastest, self._marks = math.sqrt(float(ringing.square.max())), dict[int, _Mark]()
         self._edges, self._rows, self._pieces = [np.zeros(1)], list[FloatArray](), 0
         self._largest = 0.0  # m, of a mode
@@ -173,7 +173,7 @@ class _Walker:
         """Walk between two breakpoints [s], in steps fine enough for both motion and pieces."""
         width, own, guess = len(self._limits), len(state.q), self._bench.corrections.copy()
         ringing, pieces = self._ringing, pieces_between(self._table, begin, until)
-        if len(pieces) > FEW_DRIVES:
+        if self._many:
             ringing, pieces = driven_by_powers(ringing, pieces), np.eye(ORDER)
         at_first = (until - begin) * self._fastest / MAX_RADIANS
         for _ in range(MAX_REFINEMENTS):

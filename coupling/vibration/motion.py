@@ -82,7 +82,7 @@ class ModalMotion:
         )
 
     def _marks(self, beside: AnyDrive) -> FloatArray:
-        """The breakpoints [s] of another drive; in the loop those that it comes to."""
+        """The breakpoints [s] of another drive; in the loop those of its own repetition."""
         edges, table = self.course.edges, drive_table([beside])
         if self.loop < 0:
             return breakpoints(table, 0.0, edges[-1])

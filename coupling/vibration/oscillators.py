@@ -26,7 +26,7 @@ ROUNDING = 1e-13  # of a drive's height or velocity: what is no jump
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
 HERMITE_ERROR = 3 / 8 / 720
 SILENT = 0.1  # of the error allowed: weaker ringing need not be followed
-MERGED = 1e-9  # of an interval: a mark where a piece begins already
+MERGED = 1e-9  # of an interval: a mark as close to a piece's begin is that begin
 LONGEST = 30.0  # radians of the slowest mode, squared, that pieces over ringing of that last share may take
 
 

@@ -59,7 +59,7 @@ class Under(NamedTuple):
     groups: IntArray  # (n + 1,) which each group has; -1 after the last
     places: FloatArray  # (5, LANES n) of groups: rho [m], and weights of P_0, a_1 and a_2, 0 in lanes to spare
     sums: FloatArray  # (15, 9, LANES) averages, not yet added up
-    placed: FloatArray  # (4,) x, y, heading and time of the averages made last; nan: there are none
+    placed: FloatArray  # (4,) x, y, heading and time of the last averages; time nan: there are none
 
 
 def new_under(count: int) -> Under:
@@ -87,6 +87,12 @@ def local_of(locals_: LocalSurface, k: int) -> LocalSurface:
 
 
 @device_no_arrays
+def forget(under: Under) -> None:
+    """Have the next averages be made anew."""
+    under.placed[3] = math.nan
+
+
+@device_no_arrays
 def enter_all(
     surface: Surface,
     locals_: LocalSurface,
@@ -102,7 +108,7 @@ def enter_all(
     """Prepare for a face at (x, y) [m] from `time` [s] on: a cell, NOWHERE or UNBUILT; when [s] the first span ends."""
     cosine, sine = math.cos(heading), math.sin(heading)
     until, slots = end, under.slots
-    under.placed[3] = math.nan
+    forget(under)
     for k in range(len(face.places)):
         p, q = face.places[k, 0], face.places[k, 1]
         p, q = x + cosine * p - sine * q, y + sine * p + cosine * q

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from particle.body.averages import TT, T, enter_all
+from particle.body.averages import TT, T, enter_all, forget
 from particle.body.balance import Balance, Base, fill_forces, least_pressure, limits, set_load
 from particle.body.face import Face
 from particle.body.limit import Search, gauge, needed
@@ -124,7 +124,7 @@ def rest_responses(
             needed(b, s.needed)
             for i in range(3):
                 row[2 * i + 1], row[9 + i] = b.load[i], s.needed[i]
-            memory.under.placed[3] = math.nan
+            forget(memory.under)
             for i in range(len(b.averages[T])):
                 b.averages[T, i] = b.averages[TT, i] = 0.0
             base = base_at(memory.local, time)

@@ -47,7 +47,7 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
             continue
         _enter(surface, request, memory, record)
         before = now.mode
-        if now.verdict != Verdict.GOES_ON or _slides(before):
+        if now.verdict != Verdict.GOES_ON or _slides(before):  # a jump made it slide
             continue
         event = _rest(request, memory) if before == Mode.RESTING else _fly(surface, request, memory)
         _note(request, memory, record, before, event)
@@ -72,7 +72,7 @@ def _slides(mode: int) -> bool:
 
 @device_no_arrays
 def _slide_on(surface: Surface, request: Request, pairs: Pairs, memory: Memory, record: PathRecord) -> None:
-    """Slides on while there is room for a row; here, as `march` counts references to all that it touches."""
+    """Slides on while there is room for a row; `march`, which makes arrays, counts references to all that it touches."""
     now: Now = memory.now[0]
     while has_room(record) and now.verdict == Verdict.GOES_ON and now.time < request.until and _slides(now.mode):
         _enter(surface, request, memory, record)

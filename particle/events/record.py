@@ -108,6 +108,8 @@ def has_room(record: PathRecord) -> bool:
 @device
 def with_room(record: PathRecord) -> PathRecord:
     """The record with room for what one turn of a march adds."""
+    if has_room(record):
+        return record
     rows, events, lengths = record.rows, record.events, record.lengths[0]
     if lengths.rows + ROOM > len(rows):
         rows = np.zeros(2 * len(rows), ROW)

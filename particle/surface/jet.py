@@ -105,7 +105,7 @@ def jet(at: FloatArray, end: int, degree: int, u: Any, v: Any, half_x: float, ha
 def point_jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
     """As `jet` at one place, of numbers; lanes are powers of v.
 
-    The array must go on after `end`, by as many as there are lanes.
+    at: (3, ...) with LANES columns or more after `end`, of any numbers.
     """
     v_2 = v * v
     v_3, v_4 = v_2 * v, v_2 * v_2
@@ -117,7 +117,7 @@ def point_jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x:
     w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = zero
     for first in range(0, degree + 1, LANES):
         a = a_u = a_uu = a_uuu = b = b_u = b_uu = c = c_u = zero
-        m = end - first * (first + 1) // 2  # behind u^i of which there are higher powers of v
+        m = end - first * (first + 1) // 2  # the end of the rows i <= degree - first
         for i in range(degree - first, -1, -1):
             m -= degree + 1 - i
             count = degree + 1 - i - first

@@ -78,6 +78,18 @@ def test_a_break_away_is_never_missed_and_never_early(kind, gravity, heights):
     assert np.isfinite(found).any()
 
 
+@pytest.mark.parametrize("below", [1e-4, 1e-6, 1e-9, 1e-11])
+@pytest.mark.parametrize("adhesion", [0.0, MASS * 9.81])
+def test_a_part_that_starts_just_below_its_limit_slips_as_its_load_falls(below, adhesion):
+    """w = -c t^5, and a steady pull: the load m (g - 20 c t^3) bends, what is needed does not."""
+    c = np.zeros((1, 1, 6))
+    c[0, 0, 5] = -0.1
+    hold = 9.81 + adhesion / MASS
+    part = Part(MASS, 9.81, 0.3 * hold * (1 - below), 0.0, 0.0, CoulombAdhesion(0.3, adhesion=adhesion).law)
+    leaves = search(polynomial_surface(c), part)[0]
+    assert leaves == pytest.approx((hold * below / 2) ** (1 / 3), rel=1e-13 / below, abs=1e-12)
+
+
 def hump(height):
     """Slope over time with its peak at t = 0.37."""
     c = np.zeros((2, 1, 6))

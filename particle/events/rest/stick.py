@@ -32,7 +32,8 @@ from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, motion_at
 from particle.types import FloatArray
 
-ROOM = 2 * MAX_HALVINGS + 2  # subintervals: so deep are halvings alone below MAX_HALVINGS other divisions
+MOST_DIVISIONS = 16  # next to a slip, in a span; then there are halvings alone
+ROOM = MAX_HALVINGS + MOST_DIVISIONS + 2  # subintervals
 SLACK = 1e-15  # of the largest squared force in the span
 
 
@@ -79,7 +80,7 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     slack = SLACK * largest_force(part, rest.motion, rest.plane, lasting, rest.force) ** 2
     rest.low[0], rest.width[0] = 0.0, 1.0
-    top, first = 0, -1  # first: the narrow subinterval that those above it on the stack are shares of
+    top, first, divisions = 0, -1, 0  # first: the narrow subinterval that those above it on the stack are shares of
     while top >= 0:
         width = rest.width[top]
         proved = False
@@ -106,8 +107,9 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
             top -= 1
             continue
         share = 0.5
-        if first >= 0 and top < MAX_HALVINGS:
+        if first >= 0 and divisions < MOST_DIVISIONS:
             share = best_division(part, rest.margins[top - first], slack)
+            divisions += share != 0.5
         rest.low[top + 1], rest.low[top] = rest.low[top], rest.low[top] + share * width
         rest.width[top], rest.width[top + 1] = (1.0 - share) * width, share * width
         if first >= 0:

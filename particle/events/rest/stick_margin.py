@@ -34,7 +34,7 @@ NARROW, DEGREE = 2.0**-7, 16
 LOAD, NEEDED = range(2)
 # A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
 ROUNDING = 1 + 1e-14
-LEAST_OFF, MOST_OFF = 2.0**-20, 0.25  # of a subinterval: how far from the slip it is divided
+LEAST_OFF, MOST_OFF = 2.0**-10, 0.25  # of a subinterval: how far from the slip it is divided
 NOISE = 1e-13  # of what is needed: what rounding may make of it
 
 
@@ -173,13 +173,12 @@ def is_safe_by_margin(part: Part, margin: FloatArray, slack: float) -> bool:
 
     They bound what is needed, and the least Q is that of the least load.
     """
-    load_low, load_high, needed = math.inf, -math.inf, -math.inf
-    for k in range(margin.shape[1]):
+    load_low, load_high, needed = margin[LOAD, 0], margin[LOAD, 0], margin[NEEDED, 0]
+    for k in range(1, margin.shape[1]):
         load_low, load_high = min(load_low, margin[LOAD, k]), max(load_high, margin[LOAD, k])
         needed = max(needed, margin[NEEDED, k])
-    if load_low < -part.law.pull_off or load_high > part.law.largest_load:
-        return False
-    return _excess(part, load_low, needed, slack) <= 0.0
+    within = -part.law.pull_off <= load_low and load_high <= part.law.largest_load
+    return within and _excess(part, load_low, needed, slack) <= 0.0
 
 
 @device_no_arrays
@@ -202,17 +201,18 @@ def holds_at_end(part: Part, margin: FloatArray, slack: float) -> bool:
 def best_division(part: Part, margin: FloatArray, slack: float) -> float:
     """The share of a subinterval at which it is divided: next to where the part slips, if that is nearly linear.
 
-    It lies as far from there as the coefficients (2, n) bend, on the side that leaves the shorter part to be searched.
+    It lies as far from there as the excess at the coefficients (2, n) bends, on the side that leaves the shorter part.
     """
     last = margin.shape[1] - 1
     begin = _excess(part, margin[LOAD, 0], margin[NEEDED, 0], slack)
     end = _excess(part, margin[LOAD, last], margin[NEEDED, last], slack)
     if not begin < 0.0 < end:
         return 0.5
-    bend, largest, rise = 0.0, 0.0, margin[NEEDED, last] - margin[NEEDED, 0]
+    bend = largest = 0.0
     for k in range(last + 1):
-        bend = max(bend, abs(margin[NEEDED, k] - margin[NEEDED, 0] - k / last * rise))
+        excess = _excess(part, margin[LOAD, k], margin[NEEDED, k], slack)
+        bend = max(bend, abs(excess - begin - k / last * (end - begin)))
         largest = max(largest, abs(margin[NEEDED, k]))
-    off = max(2.0 * bend, NOISE * largest) / (end - begin)
-    slips, off = begin / (begin - end), max(off, LEAST_OFF)
+    slips, off = begin / (begin - end), max(2.0 * bend, NOISE * largest) / (end - begin)
+    off = max(off, LEAST_OFF)
     return (slips - off if slips > 0.5 else slips + off) if off < MOST_OFF else 0.5

@@ -7,12 +7,14 @@ import pytest
 from scipy.optimize import brentq
 
 from coupling.ringing import make_ringing_model, motion
+from coupling.ringing.forces import accelerate, driven_by_powers, fill_node, new_bench, ringing_of
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import make_model
 from coupling.vibration import always_running, choice, make_vibration_model, motion_of
 from fem_plate import Plate, PlateSection, backbone
+from fem_plate.large_deflection import ReducedPlate
 from meshes import disc
-from particle import Drive
+from particle import Drive, kernel
 from tests.reference.radial_stretching import StretchingDisc
 from tests.reference.reduced_solver import energy
 
@@ -73,6 +75,30 @@ def test_powers_of_time_stand_for_many_drives(monkeypatch):
     for own, same in zip(one.drives, other.drives, strict=True):
         for values, expected in zip(same.evaluate(TIMES), own.evaluate(TIMES), strict=True):
             np.testing.assert_allclose(values, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.compiled
+def test_powers_of_time_accelerate_modes_as_the_drives_that_are_sums_of_them():
+    rng, count, modes, n = np.random.default_rng(0), 9, 2, 3
+    forms = rng.normal(size=(6, count + modes + n, count + modes + n))
+    forms = forms + forms.transpose(0, 2, 1)
+    plate = ReducedPlate(50.0 * np.eye(n), forms[:4], in_plane=forms[4:])
+    own = np.array([1.0, 4.0]), np.array([0.1, 0.2]), np.array([1.0, 2.0])
+    many = ringing_of(plate.forms, *own, rng.normal(size=(modes, count)))
+    pieces, q, q_t = 0.1 * rng.normal(size=(count, 6)), 0.1 * rng.normal(size=modes), rng.normal(size=modes)
+    found = []
+    for ringing, rows in ((many, pieces), (driven_by_powers(many, pieces), np.eye(6))):
+        bench, out, node = new_bench(ringing), np.zeros(modes), np.zeros((3, modes + n + 2))
+        bench.pieces[:] = rows
+        _accelerated(ringing, bench, q, q_t, out, node)
+        found.append(node)
+    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-10 * np.abs(found[0]).max())
+
+
+@kernel
+def _accelerated(ringing, bench, q, q_t, out, node):
+    accelerate(ringing, bench, 0.3, 0.7, q, q_t, out, False, True)
+    fill_node(ringing, bench, q, q_t, out, node)
 
 
 def zero(drive, low, high):
