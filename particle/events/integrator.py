@@ -65,14 +65,14 @@ def _begin(request: Request, memory: Memory) -> None:
     now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
 
 
-@inlined
+@device_no_arrays
 def _slides(mode: int) -> bool:
     return mode == Mode.SLIDING or mode == Mode.MANIFOLD
 
 
 @device_no_arrays
 def _slide_on(surface: Surface, request: Request, pairs: Pairs, memory: Memory, record: PathRecord) -> None:
-    """Slides on while there is room for a row; `march`, which makes arrays, counts references to all that it touches."""
+    """Slides on while there is room for a row. `march`, which makes arrays, counts references to all it touches."""
     now: Now = memory.now[0]
     while has_room(record) and now.verdict == Verdict.GOES_ON and now.time < request.until and _slides(now.mode):
         _enter(surface, request, memory, record)
