@@ -154,10 +154,10 @@ class _Walker:
         for begin, until in pairwise(edges.tolist()):
             self._jump(begin, until, state)
             parts = math.ceil((until - begin) * self._fastest / MAX_RADIANS / MAX_STEPS)
+            at_rest = until == end and not pieces_between(self._table, begin, until)[:, 1:].any()
             for first, last in pairwise(np.linspace(begin, until, parts + 1).tolist()):
                 self._cross(first, last, shift, state)
                 doing("stretching plate: following its ringing", min((last + shift) / end, 1.0))
-                at_rest = until == end and not pieces_between(self._table, begin, until)[:, 1:].any()
                 if at_rest and self._accelerations[-1] <= MIN_ACCELERATION * self.largest_acceleration:
                     return
 

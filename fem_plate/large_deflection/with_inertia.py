@@ -76,17 +76,17 @@ def _stretched(
     steep = amplitudes * np.max([np.abs(p).max(axis=(0, 1)) for p in at], axis=0)
     pairs = partial(_pairs, amplitudes, steep)
     if membrane.law is None:
-        forces = _forces(membrane, _motions(membrane, at, pairs(least), least))
+        forces = _forces(membrane, _orthogonal_answers(membrane, at, pairs(least), least))
     else:
         forces = _forces_by_law(discrete, at, pairs(least), least)
     forms = forms_of(membrane.samples, forces, at)
     at = at if in_plane is membrane else _slopes(discrete, in_plane, shapes)
-    motions = _motions(in_plane, at, pairs(IN_PLANE * least), IN_PLANE * least)
+    motions = _orthogonal_answers(in_plane, at, pairs(IN_PLANE * least), IN_PLANE * least)
     moved = -forms_of(in_plane.samples, _forces(in_plane, motions), at)
     return ReducedPlate(bending_products(discrete, corrections), forms, in_plane=moved), motions
 
 
-def _motions(membrane: Membrane, at: list[FloatArray], pairs: Iterator[Pairs], least: float) -> FloatArray:
+def _orthogonal_answers(membrane: Membrane, at: list[FloatArray], pairs: Iterator[Pairs], least: float) -> FloatArray:
     """The unknowns (m, c) of orthogonal answers to pairs of shapes, each of unit energy."""
     found = np.zeros((membrane.stiffness.shape[0], 0))
     for i, j, weights in pairs:

@@ -67,6 +67,7 @@ def _begin(request: Request, memory: Memory) -> None:
 
 @device_no_arrays
 def _slides(mode: int) -> bool:
+    """Whether a part slides, on the slow manifold or off it."""
     return mode == Mode.SLIDING or mode == Mode.MANIFOLD
 
 
