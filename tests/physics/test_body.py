@@ -26,6 +26,9 @@ from particle import (
     simulate,
     simulate_many,
 )
+from particle.body import new_body_memory
+from particle.body.averages import TT, enter_all, fill_averages
+from particle.jit import jit
 
 pytestmark = pytest.mark.compiled
 SQUARE, DISC = Footprint.rectangle(1e-4, 1e-4), Footprint.disc(5e-5)
@@ -312,3 +315,29 @@ def test_a_disc_slides_on_a_platform_that_moves_by_less_than_its_radius():
     disc = Body(Footprint.disc(5e-5), 2e-5, 1e-9, position=(0.0, 0.0), velocity=(0.02, 0.0))
     path = simulate(still, disc, CoulombAdhesion(0.1), 0.05)
     assert path.distance == pytest.approx(0.02**2 / (2 * 0.1 * 9.80665), rel=1e-9)
+
+
+@jit
+def looked_at(surface, face, memory, out):
+    """Averages under a face: made, asked for again, in the next span, at another heading, back; whether made anew."""
+    local, under, averages, anew = memory.local, memory.under, memory.balance[0].averages, np.zeros(5)
+    enter_all(surface, local, under, face, 0.0, 0.0, 0.3, 0.999e-3, 2.0, (0.0, 0.0))
+    for k in range(5):
+        if k == 2:
+            enter_all(surface, local, under, face, 0.0, 0.0, 0.3, 1e-3, 2.0, (0.0, 0.0))
+        anew[k] = fill_averages(local, under, 0.0, 0.0, 0.31 if k == 3 else 0.3, 1e-3, averages)
+        out[k] = averages
+    return anew
+
+
+def test_a_place_is_not_looked_at_twice_in_one_span():
+    until = Drive(1e-5, 1e3, "cosine", cycles=1)  # it ends with a jump of its acceleration
+    surface = surface_motion(DiscShapes(np.array([[1e-4, 0.0]]), 1e-3), [until], 1e-9)
+    surface.store.build(np.zeros((1, 2)))
+    face = Body(SQUARE, position=(0.0, 0.0), **HALF).face(3, True)
+    memory, out = new_body_memory(surface.record, face, np.zeros(1, dtype=np.int64)), np.zeros((5, 15, 9))
+    assert looked_at(surface.record, face, memory, out).tolist() == [1, 0, 1, 1, 1]
+    np.testing.assert_array_equal(out[1], out[0])
+    np.testing.assert_array_equal(out[4], out[2])
+    assert out[0][TT, 2] > 100.0 > 1e-6 > abs(out[2][TT, 2])
+    assert not np.array_equal(out[3], out[2])
