@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from particle.drives.pieces import ORDER, ROUNDING, DriveTable, drive_piece, find_alike
-from particle.jit import jit
+from particle.jit import device_no_arrays, jit
 from particle.types import FloatArray
 
 MAX_PASSES = 1000  # of any endless drive in the period that all have in common
@@ -60,9 +60,8 @@ class Segments(NamedTuple):
 # What a jump of the fourth and fifth derivative adds, over the time of a bridge, to one of the third (see `span`).
 JUMP_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # JUMP_OVER: of a stroke
 
-# Derivatives 1 to 5 of a segment at its begin and end, times its scale to that power, from its coefficients: (6, 5).
-_AT_END = np.array([[math.perm(k, order) for order in range(1, ORDER)] for k in range(ORDER)], dtype=float)
-_AT_BEGIN = np.where(np.eye(ORDER, ORDER - 1, -1) > 0, _AT_END, 0.0)
+# Of powers k in derivatives 1 to 5, at 1: k (k - 1) ..., (5, 6).
+_FACTORS = np.array([[math.perm(k, order) for k in range(ORDER)] for order in range(1, ORDER)], dtype=float)
 
 
 def joined(
@@ -220,46 +219,46 @@ def _jumps(table: DriveTable) -> FloatArray:
     Breakpoints are from one segment to the next, at its start and at its end. There is none at the start of a drive
     without delay: no run begins before it.
     """
-    if len(table.span) == 0:
-        return np.zeros((0, ORDER - 1))
-    orders = np.arange(1, ORDER)
-    per_order = table.scale[:, None] ** orders
-    begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
     # At rest before the start, and after the end if there is one; before that the end of a pass goes on into the next.
-    jump, most, shortest = _largest_jumps(table, begins, ends)
-    rounding = 100 * ROUNDING * most[:, None] / shortest[:, None] ** orders
+    jump, most, shortest = _largest_jumps(table)
+    rounding = 100 * ROUNDING * most[:, None] / shortest[:, None] ** np.arange(1, ORDER)
     return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
 
 
 @jit
-def _largest_jumps(
-    table: DriveTable, begins: FloatArray, ends: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The largest jump of each derivative (N, 5), coefficient (N,) and the least scale (N,) of each drive.
-
-    begins, ends: (S, 5) derivatives where its segments begin and end.
-    """
+def _largest_jumps(table: DriveTable) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The largest jump of each derivative (N, 5), coefficient (N,) and the least scale (N,) of each drive."""
     count = len(table.span)
-    jump, most, shortest = np.zeros((count, begins.shape[1])), np.zeros(count), np.full(count, math.inf)
+    jump, most, shortest = np.zeros((count, ORDER - 1)), np.zeros(count), np.full(count, math.inf)
     for i in range(count):
         first, last = table.first[i], table.first[i + 1] - 1
         loop_first, loop_last = table.loop[i, 0], table.loop[i, 1] - 1
         for k in range(first, last + 1):
             shortest[i] = min(shortest[i], table.scale[k])
-            for j in range(table.coefficients.shape[1]):
+            for j in range(ORDER):
                 most[i] = max(most[i], abs(table.coefficients[k, j]))
-        for j in range(begins.shape[1]):
+        for j in range(ORDER - 1):
             largest = 0.0
             if table.delay[i] > 0:
-                largest = max(largest, abs(begins[first, j]))
+                largest = max(largest, abs(_derivative(table, first, j, 0.0)))
             if math.isfinite(table.repeats[i]):
-                largest = max(largest, abs(ends[last, j]))
+                largest = max(largest, abs(_derivative(table, last, j, 1.0)))
             if table.repeats[i] > 1:
-                largest = max(largest, abs(ends[loop_last, j] - begins[loop_first, j]))
+                jumped = _derivative(table, loop_last, j, 1.0) - _derivative(table, loop_first, j, 0.0)
+                largest = max(largest, abs(jumped))
             for k in range(first + 1, last + 1):
-                largest = max(largest, abs(begins[k, j] - ends[k - 1, j]))
+                largest = max(largest, abs(_derivative(table, k, j, 0.0) - _derivative(table, k - 1, j, 1.0)))
             jump[i, j] = largest
     return jump, most, shortest
+
+
+@device_no_arrays
+def _derivative(table: DriveTable, segment: int, order: int, s: float) -> float:
+    """The derivative of an order, from 0 for the first, of a segment at its begin, s = 0, or its end, s = 1."""
+    total = 0.0
+    for k in range(order + 1, ORDER if s else order + 2):
+        total += _FACTORS[order, k] * table.coefficients[segment, k]
+    return total / table.scale[segment] ** (order + 1)
 
 
 @jit
