@@ -7,6 +7,7 @@ import pytest
 
 from particle import Drive, polynomial_surface
 from particle.drives import drive_table, next_breakpoint, quintic_drives
+from particle.drives.table import FIFTH, FOURTH, JUMP_OVER
 from particle.surface import enter, new_local, surface_at
 
 EDGES = np.array([0.0, 0.5, 0.75, 2.0])
@@ -52,6 +53,20 @@ def test_they_are_rows_of_a_table_beside_other_drives():
         times.append(time)
     assert times == pytest.approx([0.5, 0.75, 1.25, 2.0, 2.25, 2.5], rel=1e-14)
     assert (table.jump > 0).tolist() == [[False, False], [True, True], [True, True]]
+
+
+@pytest.mark.parametrize("loop", [None, 1])
+def test_jumps_are_those_of_each_derivative_from_piece_to_piece(loop):
+    (drive,) = quintic_drives(EDGES, coefficients(1), loop, 0.5, 1.0, np.zeros(1))
+    pieces, largest = drive.segments(), []
+    for order in range(1, 6):
+        rates = [np.polynomial.Polynomial(c).deriv(order) for c in pieces.coefficients]
+        begins, ends = ([rate(s) for rate in rates] / pieces.scale**order for s in (0.0, 1.0))
+        back = begins[pieces.lead] if loop else 0.0  # where the pass begins, or at rest
+        largest.append(max(*np.abs(begins[1:] - ends[:-1]), abs(ends[-1] - back)))
+    table, over = drive_table([drive]), JUMP_OVER * 0.5
+    assert table.jump[0] == pytest.approx(largest[:2], rel=1e-12)
+    assert table.rough[0] == pytest.approx(largest[2] + FOURTH * over * largest[3] + FIFTH * over**2 * largest[4])
 
 
 def test_a_smooth_loop_does_not_jump():
