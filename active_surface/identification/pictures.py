@@ -24,6 +24,7 @@ MEASURED: Final[dict[str, Any]] = {
     "alpha": 0.7,
 }
 COLOURS: Final = ("#1b4f9c", "#c8371b", "#2d7d46")  # of x, y and heading
+FEW_TICKS: Final = 3  # along x of the narrow map, where a small part of a large place takes long numbers
 ROW, LEAST_HEIGHT = 2.6, 3.8  # in, of one of several tracks, and of all
 WORDS: Final[dict[str, Any]] = {"fontsize": 9, "parse_math": False}
 
@@ -59,6 +60,7 @@ def _draw_map(axes: Axes, fit: TrackFit, legend: bool) -> None:
     if legend:
         axes.legend(frameon=False)
     map_axes(axes, unit)
+    axes.locator_params("x", nbins=FEW_TICKS)
     axes.set_aspect("equal", adjustable="datalim")
 
 

@@ -98,14 +98,13 @@ def put_label(axes: Axes, text: str, point: ArrayLike, offset: tuple[float, floa
 def clear_labels(figure: Figure) -> None:
     """Move the labels in a figure, in which all else is drawn, to where they cover least."""
     figure.draw_without_rendering()  # which finds the layout
-    joints = [_path_of(one) for one in figure.artists if isinstance(one, Patch)]
     for axes in figure.axes:
         notes = [one for one in axes.texts if isinstance(one, Annotation)]
         arrows = [_path_of(one.arrow_patch) for one in notes if one.arrow_patch]
         lines, marks = _drawn(axes)
         placed: list[Bbox] = []
         for label in (one for one in notes if one.get_text()):
-            placed.append(_move(label, [*joints, *arrows, *lines], marks, placed))
+            placed.append(_move(label, [*arrows, *lines], marks, placed))
 
 
 def _move(label: Annotation, lines: list[Curve], marks: FloatArray, placed: list[Bbox]) -> Bbox:

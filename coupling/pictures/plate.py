@@ -199,7 +199,11 @@ def _join(axes: Sequence[Axes], unit: Unit, window: FloatArray) -> None:
     for k in (0, 1):
         place = np.array([window[1, 0], window[k, 1]]) * unit.per_si
         ends: dict[str, Any] = {"axesA": axes[0], "coordsA": "data", "axesB": axes[1], "coordsB": "axes fraction"}
-        figure_of(axes[0]).add_artist(ConnectionPatch(tuple(place), (0, k), **ends, linewidth=0.7))
+        line = ConnectionPatch(tuple(place), (0, k), **ends, linewidth=0.7, clip_on=False)
+        line.set_in_layout(False)
+        axes[0].add_artist(line)
+    axes[0].set_zorder(axes[1].zorder + 1)  # drawn after the second ones, whose place their drawing settles
+    axes[0].title.set(zorder=line.zorder + 1, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
 
 
 def draw_path(axes: Axes, rows: Rows, line: FloatArray, unit: Unit, box: FloatArray) -> list[Artist]:

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from scipy.stats import t as student
 
 from active_surface import Case, Track, identify, read_case, read_track
 from active_surface.cli.program import main
+from active_surface.identification.estimate import TrackFit
+from active_surface.identification.pictures import _draw_map
 from coupling.case import write_case
 
 MASS, COEFFICIENT, SQUEEZE, GRAVITY, SPEED = 2e-9, 0.5, 2e-8, 9.80665, 1.0
@@ -202,3 +209,15 @@ def test_the_command_writes_the_case_and_a_picture(tmp_path, monkeypatch):
         again = CliRunner().invoke(main, [*words, *more])
         assert again.exit_code == 2 and said in again.stderr
     assert (tmp_path / "results/braking_identified.toml").read_bytes() == before
+
+
+def test_places_far_from_the_origin_are_legible_on_the_map() -> None:
+    """In numbers of seven digits, as the way is a small part of the place."""
+    way = np.column_stack([np.linspace(-250e-6, -248.8e-6, len(TIMES)), np.full(len(TIMES), 60e-6)])
+    path: Any = SimpleNamespace(at=lambda times: SimpleNamespace(position=way))
+    figure = Figure(figsize=(3.0, 4.0))
+    axes = figure.add_subplot()
+    _draw_map(axes, TrackFit("braking", braking(), Track(TIMES, way), path), legend=False)
+    FigureCanvasAgg(figure).draw()
+    labels = [one.get_window_extent() for one in axes.get_xticklabels() if one.get_text()]
+    assert len(labels) >= 2 and all(one.x1 < other.x0 for one, other in pairwise(labels))

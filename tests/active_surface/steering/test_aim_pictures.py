@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import ConnectionPatch, Rectangle
 
 from active_surface.steering import Aimed, Task, picture
 from active_surface.steering.robustness import Scatter
@@ -47,7 +48,10 @@ def test_a_short_path_is_drawn_in_a_window_beside_the_plate(monkeypatch, tmp_pat
     assert np.mean(window.get_xlim()) == pytest.approx(1e6 * (START[0] + target[0]) / 2)
     lines = [line.get_label() for line in plate.lines]
     assert "path" not in lines and "path" in [line.get_label() for line in window.lines]
-    corners = plate.patches[-1].get_bbox().get_points() * 1e3  # um
+    (frame,) = [patch for patch in plate.patches if isinstance(patch, Rectangle)]
+    joints = [patch.zorder for patch in plate.patches if isinstance(patch, ConnectionPatch)]
+    assert len(joints) == 2 and plate.title.get_bbox_patch() and plate.title.zorder > max(joints)  # it is legible
+    corners = frame.get_bbox().get_points() * 1e3  # um
     assert corners[:, 0] == pytest.approx(window.get_xlim()) and corners[:, 1] == pytest.approx(window.get_ylim())
 
 
@@ -80,7 +84,7 @@ def test_words_are_clear_of_each_other_and_numbers_of_lines(monkeypatch, tmp_pat
         boxes = [text.get_window_extent() for text in one.texts]
         assert not any(box.count_overlaps(boxes[:k]) for k, box in enumerate(boxes))
         curves = [line for line in one.lines if line.get_linestyle() != "None"]
-        curves += [*one.patches, *figure.artists]  # the window, and what joins it to its panel
+        curves += one.patches  # the window, and what joins it to its panel
         paths = [curve.get_transform().transform_path(curve.get_path()) for curve in curves]
         assert not any(path.intersects_bbox(box, filled=False) for path in paths for box in boxes)
     assert len(axes[0].texts) == len(read_case(EXAMPLES / f"{case}.toml").actuators)
