@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from active_surface.studies.feasibility.chart import TOLERANCE, Column, make_chart
-from active_surface.studies.feasibility.pick import _candidates, clearances
+from active_surface.studies.feasibility.pick import _candidates, clearances, pick
 from active_surface.studies.feasibility.pictures import AROUND, _ends
 from active_surface.studies.feasibility.result import Feasibility
 from common import draw
+from particle import Outcome
 
 STROKES = (1e-3, 16.0)
 
@@ -96,6 +97,26 @@ def test_the_picture_shows_nothing_as_known_that_was_not_looked_at(strokes, unkn
     hatched = next(band.get_paths()[0].get_extents() for band in axes.collections if band.get_hatch() == "////")
     assert (hatched.y0, hatched.y1) == pytest.approx((10 * strokes[0], 8 * strokes[1]))
     assert any(line.get_linestyle() == "--" for line in axes.lines) == any("beyond" in label for label in labels)
+
+
+def test_a_point_that_carries_the_part_too_short_a_way_is_refused_with_the_least_distance(monkeypatch):
+    """The best of those tried, too, which is no proof that no other does."""
+    path = SimpleNamespace(outcome=Outcome.MOVING, distance=1.21e-6)
+    ground = {"surface": SimpleNamespace(size=2e-3), "paths": lambda points, threads: [path] * len(points)}
+    monkeypatch.setitem(
+        pick.__globals__, "run_case", lambda case, progress: SimpleNamespace(trajectory=path, summary=path)
+    )
+    monkeypatch.setattr(Feasibility, "at", lambda *_: None)
+    found = found_of(charted(lambda k: 1.0, lambda k: 4.0), **ground)
+    least = "must carry the part farther than 2 µm, 0.001 of half the plate's longer side, without losing it; got "
+    ends = ", where it moves only 1.21 µm: at that frequency it slips from 10 µm and is lost from 40 µm"
+    with pytest.raises(ValueError, match=f"^Input pick of feasibility {least}400 Hz and 20 µm{ends}$"):
+        pick(found, 400.0, 2e-5)
+    with pytest.raises(ValueError, match=rf"{least}the best of \d+ points, .* µm{ends}$"):
+        pick(found)
+    narrow = found_of(charted(lambda k: 1.0, lambda k: 1.01), **ground)
+    with pytest.raises(ValueError, match="at none .* is the stroke that loses the part 1.02 times the one that moves"):
+        pick(narrow)
 
 
 def test_the_drawn_chart_ends_at_the_least_stroke_that_was_looked_at_or_at_the_case():
