@@ -24,7 +24,7 @@ MOST_MODELS: Final = 6  # of others, each of which needs a model
 class Choice(NamedTuple):
     """Which actuators run, and how far each is behind."""
 
-    name: str  # such as "column 1"; of a wave "columns" or "rows"
+    name: str  # such as "column 0"; of a wave "columns" or "rows"
     running: tuple[int, ...]
 
     def of(self, case: Case) -> Case:

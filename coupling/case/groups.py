@@ -13,7 +13,7 @@ SAME_LINE: Final = 1e-3  # of an array's longer side: actuators as near to each 
 
 
 def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
-    """The actuators' numbers of each group by its name: all; each column from the left; each row from below; or each.
+    """The actuators' numbers by groups: all; each column from the left, from 0; each row from below; or each.
 
     Raises ValueError for another kind.
     """
@@ -27,7 +27,7 @@ def groups_of(case: Case, kind: str) -> dict[str, tuple[int, ...]]:
     sides = list(zip(*(one.position for one in case.actuators), strict=True))
     near = SAME_LINE * max(max(side) - min(side) for side in sides)
     lines = _lines(sides[0 if kind == "columns" else 1], near)
-    return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines, 1)}
+    return {f"{kind[:-1]} {number}": line for number, line in enumerate(lines)}
 
 
 def _lines(along: Sequence[float], near: float) -> list[tuple[int, ...]]:

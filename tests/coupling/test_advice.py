@@ -42,8 +42,8 @@ def array(frequency=1e3, **drive):
 
 def test_lines_of_an_array_are_counted_from_the_left_and_from_below():
     case = array()
-    assert groups_of(case, "columns") == {"column 1": (0, 3, 6), "column 2": (1, 4, 7), "column 3": (2, 5, 8)}
-    assert groups_of(case, "rows")["row 1"] == (0, 1, 2) and groups_of(case, "all") == {"all": tuple(range(9))}
+    assert groups_of(case, "columns") == {"column 0": (0, 3, 6), "column 1": (1, 4, 7), "column 2": (2, 5, 8)}
+    assert groups_of(case, "rows")["row 0"] == (0, 1, 2) and groups_of(case, "all") == {"all": tuple(range(9))}
     assert groups_of(case, "each")["actuator 8"] == (8,)
     with pytest.raises(ValueError, match='must be "all", "columns", "rows" or "each"; got \'lines\''):
         groups_of(case, "lines")
@@ -51,7 +51,7 @@ def test_lines_of_an_array_are_counted_from_the_left_and_from_below():
 
 def test_a_choice_lets_others_rest_or_run_behind():
     case = array()
-    alone = Choice("column 1", (0, 3, 6)).of(case)
+    alone = Choice("column 0", (0, 3, 6)).of(case)
     assert [one.stroke for one in alone.actuators] == [5e-6, 0, 0] * 3
     wave = Choice("columns", tuple(range(9))).of(case)
     assert [one.delay for one in wave.actuators] == pytest.approx([0, 2.5e-4, 5e-4] * 3)

@@ -56,7 +56,7 @@ class DriftMap:
     """Where a part goes in a period of some actuators, which have always been running, from rest at n places."""
 
     name: str  # of the group of actuators
-    actuators: tuple[int, ...]  # that run; the others hold the plate where it is
+    actuators: tuple[int, ...]  # of these that move; all others hold the plate where it is
     period: float  # s
     after: int  # periods from rest before that of the map
     field: Field

@@ -36,6 +36,7 @@ from coupling.scene import PlateScene
 from coupling.stretch import schedule_of
 from coupling.vibration import always_running
 from particle import Outcome, PartAtRest, State, Trajectory
+from particle.drives import drive_table
 from particle.friction import LOCAL, Contact, ScaledFriction
 
 ACROSS: Final = 32  # places along the plate's longer side
@@ -97,7 +98,7 @@ def drift(
     plates, case = plates or SolvedPlates(), endless_case(case)
     with one_blas_thread():
         maps = [
-            _map(running_case(case, numbers), name, numbers, across, threads, progress, plates)
+            _map(running_case(case, numbers), name, across, threads, progress, plates)
             for name, numbers in running.items()
         ]
     return Drift(case, tuple(maps))
@@ -120,14 +121,14 @@ def running_groups(case: Case, groups: str | Mapping[str, Sequence[int]]) -> dic
 def _map(
     case: Case,
     name: str,
-    numbers: tuple[int, ...],
     across: int,
     threads: int | None,
     progress: Progress,
     plates: SolvedPlates,
 ) -> DriftMap:
     """The map of a case whose drives have no end."""
-    schedule = schedule_of([always_running(one) for one in build_drives(case)], math.inf)
+    drives = [always_running(one) for one in build_drives(case)]
+    schedule, running = schedule_of(drives, math.inf), np.flatnonzero(moving(drive_table(drives))).tolist()
     if schedule.loop < 0:
         raise ValueError("Input case of drift must have drives with a common period: frequencies in whole ratios")
     period = float(schedule.edges[-1] - schedule.edges[schedule.loop])
@@ -148,7 +149,7 @@ def _map(
         after, check = _checked(ground, [field for field, _ in found], starts, round(case.run.duration / period), tell)
     field, turned = found[after]
     places = ground.scene.shapes.points
-    return DriftMap(name, numbers, period, after, field, starts, turned, sliding, check, outline, places)
+    return DriftMap(name, tuple(running), period, after, field, starts, turned, sliding, check, outline, places)
 
 
 def _displaced(

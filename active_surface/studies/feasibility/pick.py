@@ -78,27 +78,31 @@ def pick(
     The best point moves the part farthest, from start to end, of those at least half as far from all borders as any is,
     in the logarithms of frequency and stroke. It is within the model's bounds where points there move the part, and
     rounded to three digits.
-    Raises ValueError where the case's run leaves the part at rest or loses it, or no point of the chart moves it.
+    Raises ValueError where the case's run loses the part or does not carry it farther than FAR of half the plate's
+    longer side, and where no column of the chart has a ratio of MIN_ROOM between its borders.
     """
+    tried = 0
     if frequency is None or stroke is None:
         with progress("Trying points of the map"):
-            best = best_point(found.ground, found.chart, found.valid, threads)
+            tried, best = best_point(found.ground, found.chart, found.valid, threads)
         if best is None:
             raise ValueError(
-                "Input pick of feasibility must be on a map where the part moves; none of its frequencies and strokes "
-                "moves the part without losing it"
+                "Input pick of feasibility must be on a map where the part moves; at none of its frequencies is the "
+                f"stroke that loses the part {MIN_ROOM:g} times the one that moves it"
             )
         frequency, stroke = (float(f"{value:.3g}") for value in (best[0] * found.frequency, best[1] * found.stroke))
     case = found.at(frequency, stroke)
     result = run_case(case, progress=progress)
     picked = Picked(case, frequency, stroke, found.stroke_unit, result)
     lost, far = result.trajectory.outcome in borders.LOST, result.summary.distance
-    if lost or not far > borders.FAR * found.ground.surface.size:
+    least = borders.FAR * found.ground.surface.size
+    if lost or not far > least:
         only = f"moves only {quantity_text(far, 'm', 3)}" if far > 0 else "stays at rest"
         what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else only
         raise ValueError(
-            f"Input pick of feasibility must move the part without losing it; got {picked.where}, where it {what}"
-            + _beside(found, frequency)
+            f"Input pick of feasibility must carry the part farther than {quantity_text(least, 'm', 3)}, "
+            f"{borders.FAR:g} of half the plate's longer side, without losing it; got "
+            f"{f'the best of {tried} points, ' * bool(tried)}{picked.where}, where it {what}{_beside(found, frequency)}"
         )
     return picked
 
@@ -120,8 +124,8 @@ def _beside(found: Feasibility, frequency: float) -> str:
 
 def best_point(
     ground: Ground, chart: Chart, largest: FloatArray, threads: int | None = None
-) -> tuple[float, float] | None:
-    """The factors of frequency and stroke of the best point; None: no point moves the part.
+) -> tuple[int, tuple[float, float] | None]:
+    """How many points are tried, and the factors of frequency and stroke of the best; None: there are none.
 
     largest: strokes (columns,) up to which the model is valid.
     """
@@ -129,15 +133,13 @@ def best_point(
     if not len(points):
         points, rooms = _candidates(chart, np.full(len(chart.columns), np.inf))
     if not len(points):
-        return None
+        return 0, None
     clear = np.flatnonzero(rooms >= CLEAR * rooms.max())
     tried = clear[np.argsort(-rooms[clear], kind="stable")[:MAX_TRIED]]
     paths = ground.paths([(float(k), float(s)) for k, s in points[tried]], threads)
     far = [-1.0 if path.outcome in borders.LOST else path.distance for path in paths]
     best = int(np.argmax(far))
-    if not far[best] > borders.FAR * ground.surface.size:
-        return None
-    return float(points[tried[best], 0]), float(points[tried[best], 1])
+    return len(tried), (float(points[tried[best], 0]), float(points[tried[best], 1]))
 
 
 def _candidates(chart: Chart, largest: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -19,9 +19,9 @@ from active_surface.studies.feasibility.result import Feasibility
 from common import Drawing, draw, quantity_text, unit_for
 from coupling.pictures import PlateView, draw_plate, put_title
 
-GREEN, PALE_RED, RED, BLUE, GREY = "#8cc7a1", "#e8b0a4", "#c8371b", "#40719c", "#8a8a8a"
+GREEN, PALE_RED, RED, BLUE, GREY, UNKNOWN = "#8cc7a1", "#e8b0a4", "#c8371b", "#40719c", "#8a8a8a", "#d6d6d6"
 PARTS: Final = 12  # of the way from one column of the chart to the next
-AROUND: Final = 1.8  # times what is drawn: the ends of the axis of strokes
+AROUND: Final = 1.8  # times what is drawn: the ends of the axis of strokes, at most to those looked at and the case
 CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
 SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
@@ -56,17 +56,18 @@ def _draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float
     limits = [chart.limits(k) for k in factors.tolist()]
     strokes = feasibility.stroke * np.array([(*one.slips, *one.lost) for one in limits])  # (n, 4)
     columns = feasibility.stroke * np.array([(one.slips, one.all_lost) for one in chart.columns])
-    low, high = _ends(columns, own[1], feasibility.stroke * np.array(chart.strokes))
+    looked_at = feasibility.stroke * np.array(chart.strokes)
+    low, high = _ends(columns, own[1], looked_at)
     unit, length = unit_for(feasibility.frequency * factors, "Hz"), unit_for(high, feasibility.stroke_unit)
     x, y = feasibility.frequency * factors * unit.per_si, np.clip(strokes, low / 2, 2 * high) * length.per_si
     bottom, top = low * length.per_si, high * length.per_si
     # From the upper of what slip may begin at to the lower of what losses may begin at it moves for certain.
     axes.fill_between(x, y[:, 1], np.maximum(y[:, 2], y[:, 1]), color=GREEN, linewidth=0)
     axes.fill_between(x, np.maximum(y[:, 3], y[:, 1]), 2 * top, color=PALE_RED, linewidth=0)
-    either = y[:, 3] > 1.011 * y[:, 2]
-    axes.fill_between(
-        x, y[:, 2], y[:, 3], where=either, facecolor=PALE_RED, edgecolor="white", hatch="////", linewidth=0, step="mid"
-    )
+    undecided: dict[str, Any] = {"facecolor": PALE_RED, "edgecolor": "white", "hatch": "////"}
+    either = y[:, 1::2] > 1.011 * y[:, ::2]  # (n, 2): whether it slips, and whether it is lost
+    for n in (0, 1):
+        axes.fill_between(x, y[:, 2 * n], y[:, 2 * n + 1], where=either[:, n], **undecided, linewidth=0, step="mid")
     axes.plot(x, y[:, 1], color="black", linewidth=1.4)
     axes.plot(x, y[:, 2], color=RED, linewidth=1.4)
     keys: list[Artist] = [
@@ -76,8 +77,12 @@ def _draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float
         Line2D([], [], color=RED, linewidth=1.4, label="it is lost from here"),
     ]
     if either.any():
-        keys.append(Patch(facecolor=PALE_RED, edgecolor="white", hatch="////", label="ragged: either"))
+        keys.append(Patch(**undecided, label="undecided"))
     keys += _draw_validity(axes, feasibility, np.array(ends), (bottom, top), unit.per_si, length.per_si)
+    if low < looked_at[0] or high > looked_at[1]:
+        for beyond in ((bottom / 2, looked_at[0] * length.per_si), (looked_at[1] * length.per_si, 2 * top)):
+            axes.axhspan(*beyond, color=UNKNOWN, linewidth=0, zorder=2.4)  # over lines, below the frame
+        keys.append(Patch(facecolor=UNKNOWN, label="not looked at"))
     keys.append(_point(axes, own, unit.per_si, length.per_si, "o", "white", "the case"))
     if picked is not None:
         keys.append(_point(axes, picked, unit.per_si, length.per_si, "*", "gold", "picked"))
@@ -85,29 +90,37 @@ def _draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float
     axes.set_xlabel(f"frequency of the fastest drive [{unit.name}]")
     axes.set_ylabel(f"{'force' if feasibility.stroke_unit == 'N' else 'stroke'} of the largest drive [{length.name}]")
     axes.set_title(f"from the case's start, {quantity_text(feasibility.ground.duration, 's', 4)}", fontsize=10)
-    axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=8)
+    axes.legend(
+        handles=keys,
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.12),
+        ncols=3,
+        frameon=False,
+        fontsize=8,
+        handleheight=1.2,
+    )
 
 
 def _ends(columns: FloatArray, own: float, strokes: FloatArray) -> tuple[float, float]:
-    """The least and the largest stroke drawn: around the borders and the case."""
+    """The least and the largest stroke drawn: around the borders and the case, of those looked at and to the case."""
     drawn = np.append(columns[np.isfinite(columns)], own)
-    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own) * AROUND)
+    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own))
 
 
 def _draw_validity(
     axes: Axes, feasibility: Feasibility, ends: FloatArray, view: tuple[float, float], per_hertz: float, per_si: float
 ) -> list[Artist]:
-    """Dots above the strokes up to which the model is valid; returns their key."""
+    """Dots above a dashed line, up to which strokes the model is valid; returns their key."""
     valid = np.clip(feasibility.stroke * feasibility.valid * per_si, view[0] / 2, 2 * view[1])
-    if (valid > view[1]).all():
+    if (valid >= view[1] * (1 - 1e-9)).all():
         return []
     x = ends * feasibility.frequency * per_hertz
-    style: dict[str, Any] = {"facecolor": "none", "edgecolor": "#00000055", "hatch": ".", "linewidth": 0.0}
-    axes.fill_between(x, valid, 2 * view[1], **style)
+    axes.fill_between(x, valid, 2 * view[1], facecolor="none", edgecolor="#00000055", hatch=".", linewidth=0.0)
     axes.plot(x, valid, "--", color="#333333", linewidth=1.0)
     linear = feasibility.ground.linear
     what = "deflection > 0.2 thickness, slope > 0.2" if linear else "slope > 0.2"
-    return [Patch(**style | {"hatch": "..."}, label=f"beyond the model:\n{what}")]
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": "#333333", "hatch": "...", "linestyle": "--"}
+    return [Patch(**look, label=f"beyond the model:\n{what}")]
 
 
 def _point(
