@@ -26,6 +26,7 @@ from .pictures import (
     extent as extent,
     frame_around as frame_around,
     mark_actuators as mark_actuators,
+    marked as marked,
     marker_size as marker_size,
     pitch as pitch,
 )

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from common import axes_or_new, draw, draw_rim, figure_of, label_axis, label_places, legend_below
 from fem_plate.plate import Plate
 from fem_plate.shapes import Shapes
-from fem_plate.types import FloatArray
+from fem_plate.types import BoolArray, FloatArray
 from meshes import Outline, PlateMesh, delaunay, rim_curves
 
 ALONG_EDGE = np.linspace(0, 1, 9)
@@ -78,16 +78,20 @@ def mark_actuators(
         return []
     inside = places
     if frame is not None:
-        inside = places[((places > frame[0]) & (places < frame[1])).all(axis=1)]
-        size = marker_size(inside, frame, width) if size is None else size
+        size = marker_size(places[marked(places, frame, 0.0)], frame, width) if size is None else size
         if not size:
             return [Line2D([], [], linestyle="", label=f"{len(places)} actuators, not marked")]
-        reach = size / width * extent(frame)
-        inside = inside[((inside > frame[0] + reach) & (inside < frame[1] - reach)).all(axis=1)]
+        inside = places[marked(places, frame, size, width)]
     size = size or MARKER_SIZES[1]
     look = ACTUATOR | {"color": colour}
     axes.plot(*(inside * per_metre).T, **look, markersize=size, markeredgewidth=size / MARKER_SIZES[1], zorder=2.5)
     return [Line2D([], [], **look, label=label)] if len(inside) else []
+
+
+def marked(places: FloatArray, frame: FloatArray, size: float, width: float = AXES_WIDTH) -> BoolArray:
+    """Which markers of a size [points] at places (N, 2) [m] lie entirely within a frame (2, 2) [m] of such a width."""
+    reach = size / width * extent(frame)
+    return np.asarray(((places > frame[0] + reach) & (places < frame[1] - reach)).all(axis=1))
 
 
 def marker_size(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:

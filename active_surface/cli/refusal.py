@@ -124,7 +124,7 @@ def check_kind(file: Path, *expected: str) -> None:
     """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
     kind = kind_of(file, expected[0])
     if kind not in expected:
-        what = KINDS[expected[0]].partition(";")[0]
+        what = " or ".join(KINDS[one].partition(";")[0] for one in expected)
         raise ValueError(f"Input path must be {what}; got {file}, {KINDS[kind]} {file}")
 
 

@@ -282,10 +282,11 @@ def _scatter(result: SteeringResult, surface: SurfaceMotion, threads: int | None
 
 
 def _drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
-    """The result with its picture and the warnings of a run; without them after Ctrl-C."""
-    if result.interrupted:
-        return result
+    """The result with its picture and the warnings of a run; without them after Ctrl-C, and without an old picture."""
     try:
+        picture.unlink(missing_ok=True)
+        if result.interrupted:
+            return result
         cautions = tuple(warnings(interruptible(run_case, result.case).summary))
         result = replace(result, warnings=cautions)
         if result.scatter is not None:

@@ -127,6 +127,7 @@ class Probes:
         case, kept = self._task.case, [one for one in probes if one.path.outcome in KEPT]
         runs, lost = f"{len(probes)} trial runs within the search's bounds", len(probes) - len(kept)
         advice = f". `active-surface advise {case.name}.toml` looks for drives that move it and keep it"
+        advice = "" if case.air is not None and case.air.film else advice  # which refuses a film
         if not kept:
             return f"the part comes off in each of {runs}{advice}"
         most = max(kept, key=lambda one: (one.path.distance, one.frequency, len(one.running)))

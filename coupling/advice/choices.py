@@ -40,7 +40,7 @@ class Choice(NamedTuple):
 
 
 def choices_of(case: Case, scene: PlateScene, place: tuple[float, float]) -> list[Choice]:
-    """Waves, and columns, rows and actuators that run alone, those nearest to a place [m] first."""
+    """Waves over lines that move, and columns, rows and actuators that run alone, nearest to a place [m] first."""
     moving = {k for k, drive in enumerate(scene.lifts) if travel(drive) > 0}
     lines = {kind: groups_of(case, kind) for kind in WAVES}
     groups = [*lines.values(), groups_of(case, "each") if len(case.actuators) <= MAX_ALONE else {}]
@@ -52,7 +52,11 @@ def choices_of(case: Case, scene: PlateScene, place: tuple[float, float]) -> lis
     def distance(choice: Choice) -> float:
         return float(np.hypot(*(scene.shapes.points[list(choice.running)] - place).T).min())
 
-    waves = [Choice(kind, tuple(sorted(moving))) for kind in WAVES if len(lines[kind]) > 2]
+    waves = [
+        Choice(kind, tuple(sorted(moving)))
+        for kind in WAVES
+        if len(lines[kind]) > 2 and sum(not moving.isdisjoint(line) for line in lines[kind].values()) > 1
+    ]
     return [*waves, *sorted(alone.values(), key=distance)][: MOST_MODELS if _needs_model(scene) else MOST]
 
 

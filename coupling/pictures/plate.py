@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from common import NOTHING, STEPS, Unit, draw_rim, figure_of, quantity_text, unit_for
 from coupling.pictures.figure import map_axes, put_label
-from fem_plate import distance_drawn, extent, frame_around, mark_actuators, marker_size, pitch
+from fem_plate import distance_drawn, extent, frame_around, mark_actuators, marked, marker_size, pitch
 from meshes import Outline, rim_curves
 from particle import HALO, PLACE, RING, Rows, draw_line
 
@@ -131,16 +131,17 @@ def draw_plate(
     axes.set_xlim(*(frame[:, 0] * unit.per_si))
     axes.set_ylim(*(frame[:, 1] * unit.per_si))
     places = view.actuators
+    size = marker_size(places, frame, width) or MIN_MARKER
     if view.moving is None:
         keys = mark_actuators(axes, places, frame, unit.per_si, width)
     else:
-        size, keys = marker_size(places, frame, width) or MIN_MARKER, []
+        keys = []
         kinds = (view.moving, "#7fa8c9", "moving actuator"), (~view.moving, "white", "actuator at rest")
         for some, colour, label in kinds:
             look: dict[str, Any] = {"size": size, "colour": colour, "label": label}
             keys += mark_actuators(axes, places[some], frame, unit.per_si, width, **look)
-    within = ((places > frame[0]) & (places < frame[1])).all(axis=1)
-    for number in np.flatnonzero(within).tolist() if view.numbered and len(places) <= MAX_NUMBERED else ():
+    numbered = marked(places, frame, size, width) if view.numbered and len(places) <= MAX_NUMBERED else ()
+    for number in np.flatnonzero(numbered).tolist():
         put_label(axes, str(number), places[number] * unit.per_si, (0, -6), **NUMBERS)
     return keys
 

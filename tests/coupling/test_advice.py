@@ -1,9 +1,13 @@
 """Advice on arrays: which actuators to drive, before anything that a user does not control."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from coupling import run_case
 from coupling.advice import Choice, advice_text, advise, advised_case
+from coupling.advice.choices import WAVES, choices_of
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -14,6 +18,7 @@ from coupling.case import (
     groups_of,
     running_case,
 )
+from coupling.scene import lifts_of
 from particle import Outcome
 
 PLATE = {
@@ -60,6 +65,17 @@ def test_a_choice_lets_others_rest_or_run_behind():
     table = ActuatorCase(position=(0.0, 0.0), table=[(0.0, 0.0), (1e-3, 5e-6), (2e-3, 0.0)])
     resting = running_case(case.model_copy(update={"actuators": (table, *case.actuators[1:])}), [1]).actuators[0]
     assert resting.table is None and resting.stroke == 0
+
+
+@pytest.mark.parametrize(
+    "running, waves", [(range(9), ["columns", "rows"]), ([0, 3, 6], ["rows"]), ([0, 1], ["columns"]), ([4], [])]
+)
+def test_a_wave_is_over_lines_of_which_several_move(running, waves):
+    case = array()
+    shapes = SimpleNamespace(points=np.array([one.position for one in case.actuators]))
+    scene = SimpleNamespace(lifts=lifts_of(running_case(case, running)), shapes=shapes, stretch=None, has_inertia=False)
+    names = [choice.name for choice in choices_of(case, scene, case.part.position)]
+    assert [name for name in names if name in WAVES] == waves
 
 
 def test_drives_without_an_end_keep_their_strokes():

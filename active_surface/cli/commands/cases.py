@@ -117,6 +117,8 @@ def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -
     less friction only where none of these carries the part. Writes the best case to NAME_advised.toml.
     """
     parsed = read(case)
+    if parsed.air is not None and parsed.air.film:
+        raise ValueError("Input case must have air.film = false: advice is for parts without a film")
     from coupling import advice, check_free, report, run_case, stage_count
     from coupling.case import write_edited
 

@@ -85,7 +85,7 @@ def feasibility(
     from active_surface.studies.feasibility import feasibility as find
     from active_surface.studies.feasibility import pick as pick_case
     from coupling import answers_drives, check_free
-    from coupling.case import largest_stroke
+    from coupling.case import largest_stroke, write_edited
 
     unit = largest_stroke(parsed)[1]
     ends = amount_of(lowest, "Hz", "--lowest"), amount_of(highest, "Hz", "--highest")
@@ -105,7 +105,7 @@ def feasibility(
             picked = pick_case(result, frequency, stroke, threads, bar)
             if not point:  # the best one was not known
                 files = result.write(output, (picked.frequency, picked.stroke))
-            files = (*files, picked.write(target))
+            files = (*files, write_edited(picked.case, parsed, case.absolute().parent, target, picked.text))
     figures = result.figures() | {"picked": None if picked is None else picked.figures()}
     rows = lines(figures) + ([] if picked is None else [("picked", picked.text)])
     return Answer(figures, rows, warnings(figures), files)

@@ -91,7 +91,11 @@ def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
         (["run", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),
         (["sweep", "examples/transport.toml"], "a case; write active-surface run examples/transport.toml"),
         (["sweep", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),
-        (["aim", "examples/studies/starts.toml"], "a study; write active-surface sweep examples/studies/starts.toml"),
+        (
+            ["aim", "examples/studies/starts.toml"],
+            "CASE must be an aim or a case; got examples/studies/starts.toml, a study; "
+            "write active-surface sweep examples/studies/starts.toml",
+        ),
         (
             ["plan", "examples/studies/starts.toml", "--through", "0,0"],
             "a study; write active-surface sweep examples/studies/starts.toml",

@@ -54,7 +54,9 @@ def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(case, folder, mo
         raise KeyboardInterrupt
 
     monkeypatch.setattr("active_surface.steering.aiming._scatter", stop)
-    aimed = aim(Task(case, TARGET), folder / "out")
+    (folder / "out").mkdir()
+    (folder / "out" / "base_aim.png").touch()  # of another search
+    aimed = aim(Task(case, TARGET), folder / "out", overwrite=True)
     assert aimed.interrupted and aimed.reached and aimed.scatter is None
     assert [file.name for file in aimed.files] == ["base_aimed.toml"]
     assert [file.name for file in (folder / "out").iterdir()] == ["base_aimed.toml"]

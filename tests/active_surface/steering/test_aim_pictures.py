@@ -53,6 +53,8 @@ def test_a_short_path_is_drawn_in_a_window_beside_the_plate(monkeypatch, tmp_pat
     assert len(joints) == 2 and plate.title.get_bbox_patch() and plate.title.zorder > max(joints)  # it is legible
     corners = frame.get_bbox().get_points() * 1e3  # um
     assert corners[:, 0] == pytest.approx(window.get_xlim()) and corners[:, 1] == pytest.approx(window.get_ylim())
+    (_, window, _), _ = drawn(monkeypatch, tmp_path, 41e-6, EXAMPLES / "device.toml")
+    assert 0 < window.get_ylim()[1] < 3 and not window.texts  # um: no room for the mark of actuator 4, nor its number
 
 
 def test_lost_parts_are_counted_and_leave_the_frame_to_the_others(monkeypatch, tmp_path):

@@ -61,6 +61,13 @@ def test_a_part_that_nothing_moves_is_said_so_at_once_and_why(case, surface, fol
     for words in (["aim", "--by", "-20,-20"], ["plan", "--by", "-20,-20", "0,5"]):
         done = CliRunner().invoke(main, [*words, str(folder / "base.toml"), "--json", "-o", str(folder)])
         assert done.exit_code == 1 and "nothing moves the part far" in json.loads(done.stdout)["failure"]
+    sized = text.replace('mass = "2e-9 kg"', 'mass = "2e-9 kg"\nsize = "50 um"')
+    (folder / "base.toml").write_text(f"{sized}[air]\nfilm = true\n")
+    quick = ["--groups", "all", "--frequency", "4 kHz:4 kHz", "-o", str(folder)]
+    done = CliRunner().invoke(main, ["aim", "--by", "-20,-20", str(folder / "base.toml"), *quick])
+    assert done.exit_code == 1 and "nothing moves the part far" in done.stdout and "advise" not in done.stdout
+    done = CliRunner().invoke(main, ["advise", str(folder / "base.toml")])
+    assert done.exit_code == 2 and "  CASE must have air.film = false: advice is for parts without" in done.stderr
 
 
 @pytest.fixture(scope="module")

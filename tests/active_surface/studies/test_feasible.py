@@ -267,6 +267,12 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
     with xarray.open_dataset(tmp_path / "one_actuator.feasibility.nc", engine="h5netcdf") as data:
         assert data["peak_area"].dims == ("frequency",) and data["peak_area"].attrs["units"] == "m^2"
         assert float(data["peak_area"].max()) == pytest.approx(figures["largest_peak_area"])
+    own = case.read_text().replace("[run]", "# Its first cycle only.\n[run]")
+    case.write_text(own)
+    done = CliRunner().invoke(main, ["feasibility", str(case), "--pick", "best", *options])
+    assert done.exit_code == 0, done.output
+    said, written = (tmp_path / "one_actuator_picked.toml").read_text().split("\n\n", 1)
+    assert said.startswith("# At ") and written.split("[part]")[1] == own.split("[part]")[1]
 
 
 @pytest.mark.parametrize(
