@@ -186,13 +186,16 @@ def _written(
 ) -> Iterator[StepsFile]:
     """Yield the file that is laid out under its partial name; give it the final name if all goes well."""
     partial = folder / f"{name}.partial.{kind}.vtkhdf"
-    with whole_file(folder / f"{name}.{kind}.vtkhdf", partial, keep=True), _opened(partial) as file:
-        result = lay_out(file)
-        result.add_metadata(metadata)
-        try:
-            yield result
-        finally:
-            result.flush()
+    try:
+        with whole_file(folder / f"{name}.{kind}.vtkhdf", partial, keep=True), _opened(partial) as file:
+            result = lay_out(file)
+            result.add_metadata(metadata)
+            try:
+                yield result
+            finally:
+                result.flush()
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"interrupted; {partial} has the steps so far") from None
 
 
 def _opened(path: Path) -> h5py.File:
