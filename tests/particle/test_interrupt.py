@@ -5,9 +5,11 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 
 import pytest
 
+from particle import ConstantFriction, Drive, Micropart, platform_surface, simulate
 from particle.interrupt import interruptible, side_by_side, unbroken, wait
 
 
@@ -59,6 +61,20 @@ def test_ctrl_c_ends_the_wait_for_another_thread():
     with pytest.raises(KeyboardInterrupt):
         interruptible(over.wait, 5)
     over.set()
+
+
+def test_ctrl_c_ends_the_paths_of_other_threads():
+    """As in a notebook, where the process goes on."""
+    before, surface = set(threading.enumerate()), platform_surface(Drive(2e-3, 50.0), size=1e-2)
+    follow = partial(simulate, surface, Micropart(2e-9, (0.0, 0.0)), ConstantFriction(2e-8))
+    follow(1e-3)  # compiles
+    work = partial(follow, 1e6)
+    threading.Timer(0.5, lambda: signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        side_by_side(work, work)
+    for thread in set(threading.enumerate()) - before:
+        thread.join(10)
+        assert not thread.is_alive()
 
 
 def test_a_wait_gives_back_what_was_found_or_raised():
