@@ -6,6 +6,7 @@ import csv
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -172,7 +173,28 @@ def read_study(
         )
         return _study(Path(path), file.text, tables, case, points)
     except (ValidationError, Faults) as error:
-        raise file.error(mistakes_of(error, StudyTables, file.tables)) from None
+        mistakes = mistakes_of(error, StudyTables, file.tables)
+        if isinstance(error, ValidationError):
+            mistakes += _of_axes(Path(path), file.tables, case)
+        raise file.error(mistakes) from None
+
+
+def _of_axes(path: Path, tables: Mapping[str, Any], case: Case | None) -> Iterator[Mistake]:
+    """What is wrong with fields and values of the axes that are right as tables, in a file that is not."""
+    study, axes = tables.get("study"), tables.get("axes")
+    name = study.get("case") if isinstance(study, dict) else None
+    if not isinstance(axes, list) or not (case or isinstance(name, str)):
+        return
+    try:
+        base = case or _case(path, str(name))
+    except Faults as fault:
+        yield from fault.mistakes
+        return
+    for k, axis in enumerate(axes):
+        with suppress(ValidationError):
+            table = AxisTable.model_validate(axis, context=UNITS_REQUIRED)
+            found = read_axes(base, [table], "grid")[1] if table.values or table.range else ()
+            yield from ((("axes", k, *at[2:]), message) for at, message in found if at[2] == "field" or at[3:])
 
 
 def _study(

@@ -132,6 +132,19 @@ def test_all_mistakes_are_told_at_once(tmp_path):
     ]
     assert "actuators.1.stroke is varied by the axis actuators.*.stroke already" in told[0]
     assert told[3].endswith('must be greater than 0; got "-1 kg"')
+    told = mistakes(
+        tmp_path,
+        "seed = -1\n" + STROKE + '[[axes]]\nfield = "run.duraton"\nrange = ["1 ms", "2 ms"]\ncount = 7.5\n'
+        '[[axes]]\nfield = "run.duraton"\nvalues = ["1 ms"]\n[[axes]]\nfield = "part.mass"\nvalues = ["1 V", "1 kg"]\n'
+        '[map]\nthreshold = "distance > 1"\n',
+    )
+    assert [line.split()[1] for line in told] == [
+        "study.seed",
+        "axes[1].count",
+        "axes[2].field",
+        "axes[3].values[0]",
+        "map.threshold",
+    ]
 
 
 @pytest.mark.parametrize("first", [True, False])
@@ -224,14 +237,14 @@ def test_an_axis_over_what_another_axis_makes_anew_is_a_mistake(tmp_path, made, 
     assert "must not vary actuators from 0 on: the axis over lattice." in told
 
 
-def test_the_tables_are_right_before_their_values_are_read(tmp_path):
+def test_a_table_is_right_before_its_values_are_read(tmp_path):
     told = mistakes(
         tmp_path,
         '[[axes]]\nfield = "actuators.*.stroke"\nname = "a b"\nvalues = ["10 um", 5, "ten um"]\n'
         '[[axes]]\nfield = "part.mass"\ncount = 3\nrange = ["1 Hz", "2 ug"]\nspacing = "log"\n'
         '[[axes]]\nfield = "actuators.0.stroke"\nvalues = ["1 parsec?"]\n',
     )
-    assert [line.split()[1] for line in told] == ["axes[0].name", "axes[1].spacing"]
+    assert [line.split()[1] for line in told] == ["axes[0].name", "axes[1].spacing", "axes[2].values[0]"]
 
 
 def test_a_value_that_is_listed_twice_is_found_among_many(tmp_path):
