@@ -165,7 +165,7 @@ def _ends(s: Summary) -> list[str]:
         s.outcome,
         f"({', '.join(quantity(place, 'm', 5) for place in s.end_position)})",
         *(quantity(value, si, 5) for value, si in ((s.end_time, "s"), (s.distance, "m"), (s.path_length, "m"))),
-        "-" if s.turned is None else f"{math.degrees(s.turned):+.4f} deg",
+        "-" if s.turned is None else f"{math.degrees(s.turned):+z.4f} deg",
         str(s.slips),
         "-" if slip is None else f"{slip.value:.4g} of the friction limit at {quantity(slip.time, 's', 4)}",
         "-" if off is None else f"{quantity(off.value * s.margins.scale, 'N')} away at {quantity(off.time, 's', 4)}",

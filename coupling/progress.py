@@ -105,7 +105,7 @@ class Bar:
             return
         if first is None:
             self._bar.reset(self._id, completed=done, total=of)
-        rate = f", {self.task.speed:.0f}/s" if self.task.speed else ""
+        rate = f", {self.task.speed:.0f}/s" if self._live and self.task.speed else ""
         self._bar.update(self._id, completed=done, total=of)
         self.show(f"{self._stage}; writing all" if done == of else self._stage + rate)
 
@@ -119,9 +119,10 @@ class Bar:
             return f"no {self._stage} yet" + (f"; {task.description}" if task.description else "")
         (before, since), done = self._first, task.completed
         line = f"{done} of {task.total} {task.description}"
-        if not before < done < task.total:
+        if not (before < done < task.total and _now() > since):
             return line
-        return f"{line}, about {_clock((task.total - done) * (_now() - since) / (done - before))} left"
+        rate = (done - before) / (_now() - since)
+        return f"{line}, {rate:{'.0f' if rate >= 10 else '.2g'}}/s, about {_clock((task.total - done) / rate)} left"
 
     def _show_bar(self) -> None:
         if not self._ended.wait(PATIENCE):

@@ -151,13 +151,17 @@ def _face(trajectory: Trajectory, friction: Contact) -> dict[str, float | None]:
     heading, margin, load = trajectory.heading, trajectory.pressure_margin, trajectory.normal_force
     if heading is None or margin is None:
         return dict.fromkeys(("end_heading", "turned", "least_pressure"))
-    ratios = least_pressure(margin, load, friction.pull_off)
+    ratios = least_pressure(margin, load, trajectory.air_force, friction.pull_off)
     least = float(np.nanmin(ratios)) if np.isfinite(ratios).any() else None
     return {"end_heading": float(heading[-1]), "turned": float(heading[-1] - heading[0]), "least_pressure": least}
 
 
-def least_pressure(margin: FloatArray, load: FloatArray, pull_off: float) -> FloatArray:
-    """The least pressure on a face over the mean, both with adhesion; nan where nothing presses or all is borne."""
+def least_pressure(margin: FloatArray, load: FloatArray, air: FloatArray | None, pull_off: float) -> FloatArray:
+    """The least pressure on a face over the mean, both with adhesion; nan where nothing presses or all is borne.
+
+    air: what a film bears of the load [N], of which margin and pressure have no share.
+    """
+    load = load if air is None else load - air
     presses = load + pull_off > 0 if math.isfinite(pull_off) else np.zeros(len(load), dtype=bool)
     return np.divide(margin * load + pull_off, load + pull_off, out=np.full(len(load), np.nan), where=presses)
 

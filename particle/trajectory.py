@@ -150,7 +150,7 @@ class Trajectory:
 
         Parameters
         ----------
-        times : array (k,)
+        times : float or array (k,)
             Times, s.
 
         Returns
@@ -161,16 +161,16 @@ class Trajectory:
         Raises
         ------
         ValueError
-            A time is nan.
+            A time is no number.
         """
-        return samples_of(self._rows_at(times, "at"), self.heading is not None, self.gap is not None)
+        return samples_of(self._rows_at(times), self.heading is not None, self.gap is not None)
 
     def contact_at(self, times: ArrayLike, friction: RoughContact | None = None) -> ContactSamples:
         """Contact and centre of mass in space at times, and the forces on the part there.
 
         Parameters
         ----------
-        times : array (k,)
+        times : float or array (k,)
             Times, s; those before the start or after the end count as these.
         friction : KogutEtsion, optional
             The law of the run, for the parts of the normal force.
@@ -183,9 +183,9 @@ class Trajectory:
         Raises
         ------
         ValueError
-            A time is nan.
+            A time is no number.
         """
-        rows = self._rows_at(times, "contact_at")
+        rows = self._rows_at(times)
         return contact_samples_of(rows, self.contact(rows), friction)
 
     def to_xarray(self, times: ArrayLike | None = None) -> xarray.Dataset:
@@ -193,7 +193,7 @@ class Trajectory:
 
         Parameters
         ----------
-        times : array (k,), optional
+        times : float or array (k,), optional
             Times, s; by default those of all rows. Each comes once, at an event with the values from then on.
 
         Returns
@@ -206,7 +206,7 @@ class Trajectory:
         Raises
         ------
         ValueError
-            A time is nan.
+            A time is no number.
         """
         return dataset_of(self._samples(times), self.events, outcome=self.outcome.value, sentence=self.sentence)
 
@@ -215,7 +215,7 @@ class Trajectory:
 
         Parameters
         ----------
-        times : array (k,), optional
+        times : float or array (k,), optional
             Times, s, as of `to_xarray`.
 
         Returns
@@ -226,21 +226,19 @@ class Trajectory:
         Raises
         ------
         ValueError
-            A time is nan.
+            A time is no number.
         """
         return table_of(self._samples(times), outcome=self.outcome.value, sentence=self.sentence)
 
     def _samples(self, times: ArrayLike | None) -> Samples:
         """Samples at ascending times, by default all rows."""
         if times is not None:
-            return self.at(np.sort(np.asarray(times, dtype=float).ravel()))
+            return self.at(np.sort(_seconds(times)))
         return Samples(*(getattr(self, name) for name in Samples._fields))
 
-    def _rows_at(self, times: ArrayLike, caller: str) -> NDArray[Any]:
+    def _rows_at(self, times: ArrayLike) -> NDArray[Any]:
         """The rows (k,) at times (k,) [s] in any order."""
-        at = np.asarray(times, dtype=float)
-        if np.isnan(at).any():
-            raise ValueError(f"Input times of {caller} must be numbers; got nan")
+        at = _seconds(times)
         last = tuple(self._last)
         if last and np.array_equal(last[0], at):
             return last[1].copy()
@@ -262,3 +260,14 @@ class Trajectory:
         return draw(self, axes)
 
     _repr_html_ = notebook_html
+
+
+def _seconds(times: ArrayLike) -> FloatArray:
+    """Times (k,), of a single one (1,); raises ValueError where one is no number."""
+    try:
+        at = np.ravel(np.asarray(times, dtype=float))
+    except (TypeError, ValueError):  # text, or rows of different lengths
+        raise ValueError(f"Input times of Trajectory must be numbers; got {times!r}") from None
+    if np.isnan(at).any():
+        raise ValueError("Input times of Trajectory must be numbers; got nan")
+    return at

@@ -15,7 +15,6 @@ from string import Template
 from typing import Any, Final
 
 from tornado.httpserver import HTTPServer
-from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
@@ -55,7 +54,11 @@ class Server:
 
     def __init__(self, open_case: Callable[[], Opened] | None = None, port: int = 0) -> None:
         self._open_case, self._token, self._lanes = open_case, secrets.token_urlsafe(24), Lanes()
-        self._sockets = bind_sockets(port, LOOPBACK, family=socket.AF_INET)
+        try:
+            self._sockets = [socket.create_server((LOOPBACK, port))]
+        except OSError:
+            raise ValueError(f"Input port must be one that is free, or 0 for any of these; got {port}") from None
+        self._sockets[0].setblocking(False)
         self.port = int(self._sockets[0].getsockname()[1])
         self._tabs: dict[str, Session] = {}
         self._connected: dict[str, Socket] = {}

@@ -11,7 +11,7 @@ from typing import Any, get_args
 import numpy as np
 
 from active_surface.identification.estimate import Estimate, TrackFit
-from active_surface.identification.parameters import FREE, case_with, check, parameters_of
+from active_surface.identification.parameters import FREE, case_with, parameters_of
 from active_surface.identification.profiles import profiled, spread_of
 from active_surface.identification.result import Identified, case_names, names_of
 from active_surface.identification.search import search
@@ -77,8 +77,7 @@ def identify(
     shared, alone = ([paths] if isinstance(paths, str) else list(paths) for paths in (free, own))
     if loss not in get_args(Loss):
         raise ValueError(f'Input loss of identify must be "squares" or "absolute"; got {loss!r}')
-    check(cases, tracks, [*shared, *alone])
-    rows = parameters_of(cases, shared, alone, bounds or {})
+    rows = parameters_of(cases, tracks, shared, alone, bounds or {})
     names = names_of([one.name for one in cases], len(tracks))
     written = case_names(cases, len(tracks), bool(alone))
     # Many small systems: BLAS threads would only wait for each other.

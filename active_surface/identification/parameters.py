@@ -21,7 +21,7 @@ EXAMPLES: Final = {"N": '"1 nN", "1 uN"', "m": '"0 um", "100 um"', "kg": '"1e-10
 Bounds = Mapping[str, Sequence[Any]]
 
 
-def check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str]) -> None:
+def _check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str]) -> None:
     """Raise ValueError unless paths of the cases can be fitted to the tracks."""
     if not cases or not tracks:
         counts = f"{len(cases)} and {len(tracks)}"
@@ -31,7 +31,9 @@ def check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str])
         raise ValueError(f"Input track of identify must be one for each case, or all of one case; got {counts}")
     for number, track in enumerate(tracks):
         case, end = cases[number % len(cases)], float(track.time[-1])
-        which = f"track {number} of identify" if len(tracks) > 1 else "track of identify"
+        which = f"track{f'[{number}]' * (len(tracks) > 1)} of identify"
+        if track.name:
+            which = f"track of identify in {track.name}"
         if case.run.scheme != "events":
             raise ValueError(
                 f'Input case {case.name} of identify must have run.scheme = "events"; got "{case.run.scheme}"'
@@ -52,13 +54,14 @@ def check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str])
 
 
 def parameters_of(
-    cases: Sequence[Case], free: Sequence[str], own: Sequence[str], bounds: Bounds
+    cases: Sequence[Case], tracks: Sequence[Track], free: Sequence[str], own: Sequence[str], bounds: Bounds
 ) -> list[list[Parameter]]:
     """For each case its parameters: shared ones, with the same bounds for all, then own ones.
 
-    Raises ValueError for the first mistake in their paths and bounds.
+    Raises ValueError for the first mistake in the tracks, the parameters' paths and their bounds.
     """
     paths = [*free, *own]
+    _check(cases, tracks, paths)
     if not paths:
         raise ValueError("Input free of identify must name at least one field, such as friction.coefficient")
     if twice := [path for path in paths if paths.count(path) > 1]:
@@ -77,7 +80,7 @@ def parameters_of(
 
 
 def _parameter(case: Case, kind: str, path: str, bounds: Sequence[Any] | None) -> Parameter:
-    name = kind
+    name = f"{kind} of identify"
     try:
         field = find_field(case, None, path)
         if field.locations[0][0] not in FREE:
@@ -86,12 +89,12 @@ def _parameter(case: Case, kind: str, path: str, bounds: Sequence[Any] | None) -
             )
         if field.kind != "number":
             raise ValueError(f"must be numbers; got {path}, a {field.kind}")
-        name = f"bounds of {path}"
+        name = f"bounds of identify for {path}"
         low, high = _usual(field) if bounds is None else _read(field, bounds)
         if not low < high:
             raise ValueError(f"must increase; got {low:g} and {high:g} in SI units")
     except ValueError as error:
-        raise ValueError(f"Input {name} of identify {error} (case {case.name})") from None
+        raise ValueError(f"Input {name} {error} (case {case.name})") from None
     return Parameter(field, low, high, logarithmic=low > 0)
 
 

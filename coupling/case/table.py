@@ -191,7 +191,11 @@ def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: 
             written = value_at(tables, at)
             mistakes.append((at, _message(detail, detail["input"] if written is None else written, root)))
         if detail["type"] == "extra_forbidden":
-            misspelt.add((*at[:-1], near(str(at[-1]), _table_at(detail["loc"][:-1], root)[0].model_fields) or ""))
+            fields = _table_at(detail["loc"][:-1], root)[0].model_fields
+            meant = near(str(at[-1]), fields)
+            several = meant and any(get_origin(part) is tuple for part in parts_of(fields[meant].annotation))
+            if meant and (several or not isinstance(detail["input"], list)):  # a list stands for no single value
+                misspelt.add((*at[:-1], meant))
     if ("lattice",) in misspelt:
         misspelt.add(("actuators",))
     return [one for one in mistakes if not (one[0] in misspelt and one[1].startswith("is missing"))]

@@ -71,7 +71,7 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
     where = "" if s.origin == "the plate" else f", counted from {s.origin}"
     rows = [
         ("outcome", f"{_ended(s)}. {s.sentence}{rest}"),
-        ("end", f"({x:.4f}, {y:.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
+        ("end", f"({x:z.4f}, {y:z.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
         (
             "distance",
             f"{s.distance * per_metre:.4f} {unit} from the start, over a path of "
@@ -88,7 +88,7 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
         rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
     if s.air is not None and s.air.end_without is not None:
         x, y = (c * per_metre for c in s.air.end_without)
-        rows.append(("film", f"without it the part would end at ({x:.4f}, {y:.4f}) {unit}, {s.air.outcome_without}"))
+        rows.append(("film", f"without it the part would end at ({x:z.4f}, {y:z.4f}) {unit}, {s.air.outcome_without}"))
     return rows + ([("loads", ", ".join(loads))] if (loads := _loads(s)) else [])
 
 
@@ -96,9 +96,10 @@ def _turn(s: Summary) -> list[tuple[str, str]]:
     """How far a part with a face has turned, and how evenly it presses."""
     if s.end_heading is None or s.turned is None:
         return []
-    turned, heading = round(math.degrees(s.turned), 4) + 0.0, math.degrees(s.end_heading)  # no -0.0000
-    least = "" if s.least_pressure is None else f"; least pressure under the part {s.least_pressure:.2g} of the mean"
-    return [("turn", f"{turned:+.4f} degrees, to a heading of {heading:.4f} degrees{least}")]
+    turned, heading = math.degrees(s.turned), math.degrees(s.end_heading)
+    pressure = None if s.least_pressure is None else round(s.least_pressure, 6)  # of which 0 is found to rounding
+    least = "" if pressure is None else f"; least pressure under the part {pressure:z.2g} of the mean"
+    return [("turn", f"{turned:+z.4f} degrees, to a heading of {heading:z.4f} degrees{least}")]
 
 
 def _ended(s: Summary) -> str:

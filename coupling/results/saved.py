@@ -48,7 +48,7 @@ FloatArray = NDArray[np.float64]
 TIMES = "VTKHDF/Steps/Values"
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
-OF_FACE = ("heading", "pressure_margin")
+OPTIONAL = ("heading", "pressure_margin", "air_force")  # of a face, and of a film
 LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED, Outcome.TIPPED))
 
 
@@ -75,6 +75,7 @@ class SavedRun:
     friction_force: FloatArray = field(repr=False)  # (k,) N
     heading: FloatArray | None = field(repr=False)  # (k,) rad, of a part with a face, as is the next one
     pressure_margin: FloatArray | None = field(repr=False)  # (k,) the least pressure over the mean
+    air_force: FloatArray | None = field(repr=False)  # (k,) N, of a film
     events: list[Event] = field(repr=False)
     rows: Samples = field(repr=False)  # all that the integrator found
     margins: MarginCurves = field(repr=False)  # over time
@@ -229,7 +230,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *numbered, EVENT_PLACE))
     texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
     step = checked_count("NumberOfPoints", part["VTKHDF/NumberOfPoints"][0])  # of which the first is the middle
-    of_face: dict[str, Any] = {name: fields[name][: k * step : step] if name in fields else None for name in OF_FACE}
+    given: dict[str, Any] = {name: fields[name][: k * step : step] if name in fields else None for name in OPTIONAL}
     end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())
     return SavedRun(
         name=split(paths["part"])[0],
@@ -240,7 +241,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
         actuators=points[: checked_count("actuators", ours.attrs["actuators"], len(points))],
         position=part["VTKHDF/Points"][: k * step : step],
         **{name: fields[name][: k * step : step] for name in OF_PART},
-        **of_face,
+        **given,
         events=[
             Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(numbered, numbers, strict=True)))
             for kind, *numbers, place in zip(*columns, strict=True)
@@ -255,8 +256,8 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
 
 def _check(run: SavedRun, k: int) -> None:
     """Raises ValueError where what was read of a part over k steps does not fit together."""
-    of_face = [name for name in OF_FACE if getattr(run, name) is not None]
-    of_each = dict.fromkeys(("time", "state", "normal_force", "friction_force", *of_face), (k,))
+    given = [name for name in OPTIONAL if getattr(run, name) is not None]
+    of_each = dict.fromkeys(("time", "state", "normal_force", "friction_force", *given), (k,))
     check_numbers("the part", vars(run), {**of_each, "position": (k, 3), "velocity": (k, 3)})
     for group, one in (("rows", run.rows), ("margins", run.margins)):
         vectors = {name: (len(one.time), 2) for name in ("position", "velocity") if group == "rows"}

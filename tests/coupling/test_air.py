@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from page_files import numbers
 
 from active_surface import Track, identify
 from active_surface.studies.feasibility import feasibility
+from active_surface.views import run_data
 from coupling import Case, PlateSummary, Summary, read_run, run_case, run_cases, warnings
 from coupling.air import AirFigures
 from coupling.case import DriveCase, InputError
@@ -228,14 +230,20 @@ TRIANGLE = {
 
 
 @pytest.mark.compiled
-def test_a_case_has_a_film_under_a_face() -> None:
-    result = run_case(case(**SHAKEN, **FILM, part={**FACE, "velocity": ["20 mm/s", "0 mm/s"], "spin": "500 rad/s"}))
+def test_a_case_has_a_film_under_a_face(tmp_path: Any) -> None:
+    made = case(**SHAKEN, **FILM, part={**FACE, "velocity": ["20 mm/s", "0 mm/s"], "spin": "500 rad/s"})
+    result = run_case(made, tmp_path)
     air, path = air_of(result.summary), result.trajectory
     assert air.included == "film"
     assert air.film_balance is not None and air.film_balance < 1e-6
     assert air.end_without is not None and air.largest_gap is not None
     assert path.air_force is not None and np.ptp(path.air_force) > 0
     assert path.heading is not None and path.heading[-1] != 0
+    own, adhesion = path.normal_force - path.air_force, made.friction.adhesion
+    least = ((path.pressure_margin * own + adhesion) / (own + adhesion)).min()  # what asperities bear
+    assert result.summary.least_pressure == pytest.approx(least)
+    panels = {panel["label"]: panel for panel in run_data(read_run(tmp_path / "case"))["curves"]["panels"]}
+    assert numbers(panels["Pressure"]["lines"][0]["values"]).min() == pytest.approx(least, rel=1e-5)
     assert not [line for line in warnings(result.summary) if "film of air" in line]
     assert any("a film carries part of the load" in text for _, text in lines(result.summary, verbose=True))
 

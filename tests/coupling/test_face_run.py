@@ -2,13 +2,14 @@
 
 import csv
 import math
+from dataclasses import replace
 
 import h5py
 import numpy as np
 import pytest
 
 from active_surface.views import write_run_page
-from coupling import Case, InputError, read_run, run_case
+from coupling import Case, InputError, compare, read_run, run_case
 from coupling.case import read_case, write_case
 from coupling.part import build_friction, build_part
 from coupling.report import lines
@@ -186,6 +187,13 @@ def test_a_run_turns_and_says_so(tmp_path):
     assert summary.turned == path.heading[-1] - path.heading[0] and summary.end_heading == path.heading[-1]
     assert summary.least_pressure == pytest.approx(path.pressure_margin.min())  # nothing adheres
     assert dict(lines(summary))["turn"].startswith(f"{math.degrees(summary.turned):+.4f} degrees, to a heading of ")
+    rounded = replace(summary, turned=-1e-15, end_heading=-1e-15, least_pressure=-7e-14, end_position=(-1e-15, 0.0))
+    said = dict(lines(rounded))
+    still = "+0.0000 degrees, to a heading of 0.0000 degrees"
+    assert said["turn"] == f"{still}; least pressure under the part 0 of the mean"
+    assert said["end"].startswith("(0.0000, 0.0000) um")
+    beside = compare(*[replace(result, summary=rounded)] * 2).lines
+    assert [text.split() for label, text in beside if label.startswith("turned")] == [["+0.0000", "deg"] * 2]
     # At rest, after its spin: the largest acceleration over that which friction bears, without a torque.
     largest = 2e-7 * (2 * math.pi * 500) ** 2 / (0.3 * 9.80665)
     assert summary.margins.slip.value == pytest.approx(largest, rel=1e-5)

@@ -141,6 +141,17 @@ def test_samples_between_rows_are_as_good_as_rows(stroke):
     assert (shuffled.position[::-1] == fine.position).all()
 
 
+def test_a_single_time_is_one_of_several_and_text_is_none(stroke):
+    _, _, trajectory = stroke
+    end = float(trajectory.time[-1])
+    assert (trajectory.at(end).position == trajectory.position[-1:]).all()
+    assert trajectory.contact_at(end).normal_force == trajectory.normal_force[-1]
+    assert trajectory.to_xarray(end).sizes["time"] == len(trajectory.to_dataframe(end)) == 1
+    for sampled in (trajectory.at, trajectory.contact_at, trajectory.to_xarray, trajectory.to_dataframe):
+        with pytest.raises(ValueError, match=r"Input times of Trajectory must be numbers; got 'x'"):
+            sampled("x")
+
+
 def test_distance_is_from_the_start_to_the_end(stroke):
     _, _, trajectory = stroke
     assert trajectory.distance == math.dist(trajectory.position[0], trajectory.position[-1])

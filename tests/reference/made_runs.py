@@ -74,6 +74,7 @@ def made_run(path, heights, time=None, state=1, above=0.0, holes=(), actuators=1
     return MadeRun(
         heading=None,
         pressure_margin=None,
+        air_force=None,
         name="made",
         complete=True,
         summary={},

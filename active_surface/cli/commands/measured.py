@@ -193,12 +193,13 @@ def identify(
     it. Writes NAME_identified.toml with the fields for each case, and NAME_identified.png.
     """
     cases = [read(file) for file in case]
-    from active_surface.identification import case_names, free_files, read_track
+    from active_surface.identification import case_names, free_files, parameters_of, read_track
     from active_surface.identification import identify as find
 
-    free_files(output, case_names(cases, len(track), bool(own)), overwrite)
     deviations = None if noise is None else _noise(noise)
     tracks, ends = [read_track(file, deviations) for file in track], _bounds(bounds)
+    parameters_of(cases, tracks, free, own, ends)  # mistakes come before results that are in the way
+    free_files(output, case_names(cases, len(track), bool(own)), overwrite)
     with stages(IDENTIFYING) as bar:
         found = find(cases, tracks, free, ends, own, "absolute" if absolute else "squares", seed, threads, bar)
     found = found.written(output, True)

@@ -60,7 +60,7 @@ def margin_of(path: Trajectory, friction: Contact, outline: Outline) -> float:
     if math.isfinite(law.pull_off):
         shares.append(float((load.min() + law.pull_off) / (load[0] + law.pull_off)))
     if path.pressure_margin is not None:
-        pressed = least_pressure(path.pressure_margin, load, law.pull_off)
+        pressed = least_pressure(path.pressure_margin, load, path.air_force, law.pull_off)
         shares.append(float(np.nanmin(pressed, initial=math.inf) / pressed[0]) if pressed[0] > 0 else math.inf)
     if math.isfinite(law.largest_load):
         shares.append(float((law.largest_load - load.max()) / (law.largest_load - load[0])))

@@ -58,10 +58,11 @@ def _panels(run: SavedRun, along: Unit) -> list[dict[str, Any]]:
     if run.heading is not None:
         turned = _fewer(*_rows(run, "heading", "counter-clockwise from x"))
         panels.insert(1, _panel("Heading", Unit("degrees", math.degrees(1.0)), *turned))
-        (rows, margin), (_, load) = (_rows(run, name, "") for name in ("pressure_margin", "normal_force"))
-        least = least_pressure(margin[""], load[""], build_friction(run.case).pull_off)
+        pull_off, (moments, order) = build_friction(run.case).pull_off, _merged(run)
+        found = [(np.asarray(one.pressure_margin), one.normal_force, one.air_force) for one in (run, run.rows)]
+        least = np.concatenate([least_pressure(*one, pull_off) for one in found])[order]
         if np.isfinite(least).any():
-            under = _fewer(rows, {"least under the part": least})
+            under = _fewer(moments, {"least under the part": least})
             panels.append(_panel("Pressure", Unit("of mean", 1.0), *under) | {"limit": 0.0})
     panels.append(_panel("Friction", "N", *_fewer(*_rows(run, "friction_force", "on the part"))))
     return panels

@@ -31,7 +31,7 @@ DIMENSIONS: Final = {
     "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
     "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
     "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness", "N/m^3": "a stiffness per area",
-    "W": "a power", "K": "a temperature", "1": "a plain number",
+    "W": "a power", "K": "a temperature", "V": "a voltage", "1": "a plain number",
 }  # fmt: skip
 """SI units, and what a quantity in each is called in a message."""
 
@@ -126,7 +126,7 @@ class Quantity:
             raise self.refusal(text, f', but there is no unit "{unit}"{hint}')
         if known != _root_of(self.unit):
             si = unit if unit in DIMENSIONS else next((si for si in DIMENSIONS if _root_of(si) == known), "")
-            raise self.refusal(text, f", {DIMENSIONS[si] if si else f'a quantity in {known:~}'}")
+            raise self.refusal(text, f", {DIMENSIONS[si]}" if si else f", which is not {DIMENSIONS[self.unit]}")
         return float(_registry().Quantity(Decimal(number), unit).m_as(self.unit))
 
     def in_range(self, text: object, value: float) -> float:

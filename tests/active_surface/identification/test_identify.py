@@ -154,8 +154,11 @@ LATE = Track(np.array([0.1, 0.3]), np.zeros((2, 2)))
     [
         ({"free": ["part.sqeeze"]}, "free of identify .* did you mean squeeze"),
         ({"free": ["run.duration"]}, "free of identify must be fields of .part., .friction. or .air."),
-        ({"free": ["part.position.0"]}, "bounds of part.position.0 of identify must be given"),
-        ({"bounds": {"friction.coefficient": (3, 2)}}, "bounds of friction.coefficient .* must increase; got 3 and 2"),
+        ({"free": ["part.position.0"]}, "Input bounds of identify for part.position.0 must be given"),
+        (
+            {"bounds": {"friction.coefficient": (3, 2)}},
+            "bounds of identify for friction.coefficient must increase; got 3 and 2",
+        ),
         ({"bounds": {"friction.coefficient": ("a", "b")}}, "must be two plain numbers; got .a."),
         ({"bounds": {"friction.coefficient": 0.2}}, "must be two values, such as 0.1, 0.9; got 0.2"),
         ({"bounds": {"part.mass": (1, 2)}}, "bounds of identify must be of free fields; got part.mass"),

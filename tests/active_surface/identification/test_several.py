@@ -77,7 +77,7 @@ def regression(tracks: list[Track]) -> tuple[np.ndarray, np.ndarray]:
 
 def trials_of(tracks: list[Track], loss: Loss = "squares") -> Trials:
     cases, surface = [braking()] * len(tracks), build_surface(braking())
-    rows = parameters_of(cases, FREE, OWN, BOUNDS)
+    rows = parameters_of(cases, tracks, FREE, OWN, BOUNDS)
     recordings = [Recording(*one) for one in zip(cases, [surface] * len(tracks), tracks, rows, strict=True)]
     return Trials(recordings, len(FREE), loss, 1)
 
@@ -194,8 +194,8 @@ FEW = Track(np.array([0.01, 0.02]), np.array([[0.0, np.nan], [0.0, np.nan]]))
     [
         (4, OWN, "track of identify must be one for each case, or all of one case; got 4 tracks for 2 cases"),
         (2, FREE, "free and own of identify must name each field once; got part.velocity.0 twice"),
-        (2, OWN, r"bounds of part.squeeze of identify must be given.*\(case b\)"),
-        (1, OWN * 2, "track 1 of identify must have more places than free fields, 3, .* got 2 until 0.02 s"),
+        (2, OWN, r"bounds of identify for part.squeeze must be given.*\(case b\)"),
+        (1, OWN * 2, r"track\[1\] of identify must have more places than free fields, 3, .* got 2 until 0.02 s"),
     ],
 )
 def test_wrong_input_of_several_is_named(tracks, count, own, said):
@@ -235,6 +235,18 @@ def test_the_command_refuses_files_and_fields_by_name(folder):
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 2
     assert "got 3 tracks for 2 cases" in done.stderr
+    (folder / "results").mkdir()  # an earlier result comes after what is wrong with the input
+    (folder / "results/a_identified.toml").write_text("")
+    done = CliRunner().invoke(main, ["identify", "--track", "a.csv", "b.csv", "a.toml", "--free", "part.masb"])
+    assert done.exit_code == 2 and "  --free must be a field of the case; part has no masb" in done.stderr
+    bounds = ["--free", "part.mass", "--bounds", "part.mass=1,2"]
+    done = CliRunner().invoke(main, ["identify", "--track", "a.csv", "b.csv", "a.toml", *bounds])
+    assert done.exit_code == 2 and "  --bounds for part.mass must be a mass such as" in done.stderr
+    done = CliRunner().invoke(main, ["identify", "--track", "a.csv", "b.csv", "a.toml", *bounds[:2]])
+    assert done.exit_code == 2 and "  --output must be free of other results; got results" in done.stderr
+    (folder / "b.csv").write_text("time [ms], x [um]\n1000, 0\n")
+    done = CliRunner().invoke(main, ["identify", "--track", "a.csv", "b.csv", "a.toml", *bounds[:2]])
+    assert done.exit_code == 2 and "  --track in b.csv must end within the run's duration" in done.stderr
     (folder / "b.csv").write_text("time [ms], x [um]\n")
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 2 and "b.csv: must have rows below its header" in done.stderr

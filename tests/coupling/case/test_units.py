@@ -17,7 +17,8 @@ from coupling.case.values import units
 LENGTHS = """
 "150 Hz" => , a frequency
 "20 degC" => , a temperature
-"5 K*m" => , a quantity in K * m
+"5 K*m" => , which is not a length
+"4 mV" => , a voltage
 "50 %" => , a plain number
 "150 umm" => , but there is no unit "umm"; did you mean um?
 "150 UM" => , but there is no unit "UM"; did you mean um?
