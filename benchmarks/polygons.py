@@ -4,8 +4,8 @@
     .venv/bin/python benchmarks/polygons.py 5 12 24    some
     .venv/bin/python benchmarks/polygons.py --force    under a central force
 
-Prints the table of `docs/accuracy.md`: the largest error of w under a uniform pressure, its estimate, and the error of
-the first frequency. Fails where an error exceeds BOUND, or TOO_SMALL times its estimate.
+Prints the table of `benchmarks/RESULTS.md`: the largest error of w under a uniform pressure, its estimate, and the
+error of the first frequency. Fails where an error exceeds BOUND, or TOO_SMALL times its estimate.
 """
 
 from __future__ import annotations
