@@ -67,7 +67,7 @@ def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
 
 
 def side_by_side(*tasks: Callable[[], Answer]) -> list[Answer]:
-    """What the tasks give, in their order, each found on a thread of its own; Ctrl-C ends the wait, and their paths.
+    """What the tasks give, in their order, each found on a thread of its own; Ctrl-C ends the wait.
 
     Once all have ended, raises the error of the first in that order which failed. A signal that arrives inside a
     compiled kernel, or while one is compiled, would otherwise be handled late or never. A thread that gets no signals
@@ -89,12 +89,12 @@ def side_by_side(*tasks: Callable[[], Answer]) -> list[Answer]:
         except BaseException as error:  # raised in the caller below
             future.set_exception(error)
 
-    for pair in zip(tasks, found, strict=True):
-        threading.Thread(target=run, args=pair, daemon=True).start()
     try:
+        for pair in zip(tasks, found, strict=True):
+            threading.Thread(target=run, args=pair, daemon=True).start()
         wait(lambda seconds: not futures.wait(found, seconds).not_done)
     except KeyboardInterrupt:
-        stop[0] = 1  # or the threads would go on where the process does, as in a notebook
+        stop[0] = 1  # or paths would go on where the process does, as in a notebook
         raise
     return [future.result() for future in found]
 

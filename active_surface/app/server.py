@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import hmac
 import json
 import secrets
@@ -56,8 +57,10 @@ class Server:
         self._open_case, self._token, self._lanes = open_case, secrets.token_urlsafe(24), Lanes()
         try:
             self._sockets = [socket.create_server((LOOPBACK, port))]
-        except OSError:
-            raise ValueError(f"Input port must be one that is free, or 0 for any of these; got {port}") from None
+        except OSError as error:
+            if error.errno != errno.EADDRINUSE:
+                raise
+            raise ValueError(f"Input port must be a free port, or 0 for any free one; got {port}") from None
         self._sockets[0].setblocking(False)
         self.port = int(self._sockets[0].getsockname()[1])
         self._tabs: dict[str, Session] = {}

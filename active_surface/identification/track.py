@@ -35,7 +35,7 @@ class Track:
         Standard deviations of x or y, m, and heading, rad, whose ratio makes headings lengths beside places; by default
         the radius of gyration of the part's face does.
     name : str, optional
-        Of its file, for messages.
+        Its file, for messages.
 
     Raises
     ------
@@ -141,4 +141,4 @@ def read_track(path: str | os.PathLike[str], noise: tuple[float, float] | None =
     missing = (np.nan,) * len(times)
     places = np.array([read.columns.get(axis, missing) for axis in AXES[:2]]).T
     heading = read.columns.get("heading")
-    return Track(np.array(times), places, None if heading is None else np.array(heading), noise, file.name)
+    return Track(np.array(times), places, None if heading is None else np.array(heading), noise, os.fspath(path))

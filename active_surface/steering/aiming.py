@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -284,7 +285,8 @@ def _scatter(result: SteeringResult, surface: SurfaceMotion, threads: int | None
 def _drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
     """The result with its picture and the warnings of a run; without them after Ctrl-C, and without an old picture."""
     try:
-        picture.unlink(missing_ok=True)
+        with suppress(OSError):  # where it cannot be removed it cannot be written either, which is said below
+            picture.unlink(missing_ok=True)
         if result.interrupted:
             return result
         cautions = tuple(warnings(interruptible(run_case, result.case).summary))

@@ -194,7 +194,8 @@ def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: 
             fields = _table_at(detail["loc"][:-1], root)[0].model_fields
             meant = near(str(at[-1]), fields)
             several = meant and any(get_origin(part) is tuple for part in parts_of(fields[meant].annotation))
-            if meant and (several or not isinstance(detail["input"], list)):  # a list stands for no single value
+            values = isinstance(detail["input"], list) and not any(isinstance(one, dict) for one in detail["input"])
+            if meant and (several or not values):  # several values stand for no single one
                 misspelt.add((*at[:-1], meant))
     if ("lattice",) in misspelt:
         misspelt.add(("actuators",))

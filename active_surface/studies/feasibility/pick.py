@@ -86,9 +86,13 @@ def pick(
         with progress("Trying points of the map"):
             tried, best = best_point(found.ground, found.chart, found.valid, threads)
         if best is None:
+            narrow = (
+                f"at every frequency the stroke that loses it is less than {MIN_ROOM:g} times the one that moves it"
+            )
+            slips = any(math.isfinite(column.slips) for column in found.chart.columns)
             raise ValueError(
-                "Input pick of feasibility must be on a map where the part moves; at none of its frequencies is the "
-                f"stroke that loses the part {MIN_ROOM:g} times the one that moves it"
+                "Input pick of feasibility must be on a map where the part moves without being lost; "
+                + (narrow if slips else "no stroke looked at moves it")
             )
         frequency, stroke = (float(f"{value:.3g}") for value in (best[0] * found.frequency, best[1] * found.stroke))
     case = found.at(frequency, stroke)

@@ -129,7 +129,7 @@ def _point(
     """Mark a frequency [Hz] and a stroke; returns the key."""
     style: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "linestyle": "none"}
     size = 14 if marker == "*" else 9
-    axes.plot(point[0] * per_hertz, point[1] * per_si, markersize=size, zorder=5, **style)
+    axes.plot(point[0] * per_hertz, point[1] * per_si, markersize=size, zorder=5, clip_on=False, **style)
     return Line2D([], [], markersize=size * 0.8, label=label, **style)
 
 

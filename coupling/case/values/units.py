@@ -126,7 +126,8 @@ class Quantity:
             raise self.refusal(text, f', but there is no unit "{unit}"{hint}')
         if known != _root_of(self.unit):
             si = unit if unit in DIMENSIONS else next((si for si in DIMENSIONS if _root_of(si) == known), "")
-            raise self.refusal(text, f", {DIMENSIONS[si]}" if si else f", which is not {DIMENSIONS[self.unit]}")
+            wanted = self.name or DIMENSIONS[self.unit]
+            raise self.refusal(text, f", {DIMENSIONS[si]}" if si else f", which is not {wanted}")
         return float(_registry().Quantity(Decimal(number), unit).m_as(self.unit))
 
     def in_range(self, text: object, value: float) -> float:

@@ -72,7 +72,7 @@ def test_no_other_file_is_there(name):
 def test_without_the_token_or_by_another_name_or_from_another_site_there_is_nothing():
     async def work(server, get):
         root = f"http://127.0.0.1:{server.port}/"
-        with pytest.raises(ValueError, match=f"Input port must be one that is free, .*; got {server.port}"):
+        with pytest.raises(ValueError, match=f"Input port must be a free port, .*; got {server.port}"):
             Server(port=server.port)
         assert (await get(root))[0] == 404
         assert (await get(f"{root}wrong/"))[0] == 404

@@ -100,7 +100,7 @@ def test_headings_are_read_from_a_column_with_a_unit_and_asked_of_a_part_that_tu
         run={"duration": 0.02},
         name="point",
     )
-    said = "track of identify in track.csv must have no heading: the part of case point has no footprint, and a point"
+    said = "track of identify in .*/track.csv must have no heading: the part of case point has no footprint, and a "
     with pytest.raises(ValueError, match=said):
         identify(point, track, "friction.coefficient")
     with pytest.raises(ValueError, match="Input heading of Track must have shape"):

@@ -115,8 +115,10 @@ def test_a_point_that_carries_the_part_too_short_a_way_is_refused_with_the_least
     with pytest.raises(ValueError, match=rf"{least}the best of \d+ points, .* µm{ends}$"):
         pick(found)
     narrow = found_of(charted(lambda k: 1.0, lambda k: 1.01), **ground)
-    with pytest.raises(ValueError, match="at none .* is the stroke that loses the part 1.02 times the one that moves"):
+    with pytest.raises(ValueError, match="; at every .* that loses it is less than 1.02 times the one that moves it$"):
         pick(narrow)
+    with pytest.raises(ValueError, match="part moves without being lost; no stroke looked at moves it$"):
+        pick(found_of(charted(lambda k: math.inf, lambda k: math.inf), **ground))
 
 
 def test_the_drawn_chart_ends_at_the_least_stroke_that_was_looked_at_or_at_the_case():
