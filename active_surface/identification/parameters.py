@@ -31,9 +31,8 @@ def _check(cases: Sequence[Case], tracks: Sequence[Track], fields: Sequence[str]
         raise ValueError(f"Input track of identify must be one for each case, or all of one case; got {counts}")
     for number, track in enumerate(tracks):
         case, end = cases[number % len(cases)], float(track.time[-1])
-        which = f"track{f'[{number}]' * (len(tracks) > 1)} of identify"
-        if track.name:
-            which = f"track of identify in {track.name}"
+        which = f"track[{number}] of identify" if len(tracks) > 1 else "track of identify"
+        which = f"track of identify in {track.name}" if track.name else which
         if case.run.scheme != "events":
             raise ValueError(
                 f'Input case {case.name} of identify must have run.scheme = "events"; got "{case.run.scheme}"'

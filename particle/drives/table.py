@@ -240,23 +240,23 @@ def _largest_jumps(table: DriveTable) -> tuple[FloatArray, FloatArray, FloatArra
         for j in range(ORDER - 1):
             largest = 0.0
             if table.delay[i] > 0:
-                largest = max(largest, abs(_derivative(table, first, j, 0.0)))
+                largest = max(largest, abs(_derivative(table, first, j, False)))
             if math.isfinite(table.repeats[i]):
-                largest = max(largest, abs(_derivative(table, last, j, 1.0)))
+                largest = max(largest, abs(_derivative(table, last, j, True)))
             if table.repeats[i] > 1:
-                jumped = _derivative(table, loop_last, j, 1.0) - _derivative(table, loop_first, j, 0.0)
+                jumped = _derivative(table, loop_last, j, True) - _derivative(table, loop_first, j, False)
                 largest = max(largest, abs(jumped))
             for k in range(first + 1, last + 1):
-                largest = max(largest, abs(_derivative(table, k, j, 0.0) - _derivative(table, k - 1, j, 1.0)))
+                largest = max(largest, abs(_derivative(table, k, j, False) - _derivative(table, k - 1, j, True)))
             jump[i, j] = largest
     return jump, most, shortest
 
 
 @device_no_arrays
-def _derivative(table: DriveTable, segment: int, order: int, s: float) -> float:
-    """The derivative of an order, from 0 for the first, of a segment at its begin, s = 0, or its end, s = 1."""
+def _derivative(table: DriveTable, segment: int, order: int, at_end: bool) -> float:
+    """The derivative of an order, from 0 for the first, of a segment where it begins or ends."""
     total = 0.0
-    for k in range(order + 1, ORDER if s else order + 2):
+    for k in range(order + 1, ORDER if at_end else order + 2):
         total += _FACTORS[order, k] * table.coefficients[segment, k]
     return total / table.scale[segment] ** (order + 1)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -16,7 +15,7 @@ from active_surface.studies.feasibility.ground import Ground
 from active_surface.studies.feasibility.result import Feasibility
 from common import quantity_text
 from coupling import Progress, Result, borders, run_case, silent
-from coupling.case import Case, write_case
+from coupling.case import Case
 
 ROWS: Final = 7  # strokes tried in a column
 PARTS: Final = 16  # of the way from one column to the next, for distances from borders
@@ -60,10 +59,6 @@ class Picked:
             "path_length": summary.path_length,
             "end_position": list(summary.end_position),
         }
-
-    def write(self, file: Path) -> Path:
-        """Writes the case to a file, with what its drives do as a comment; returns its path."""
-        return write_case(self.case, file, self.text)
 
 
 def pick(

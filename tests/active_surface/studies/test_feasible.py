@@ -318,7 +318,7 @@ def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borde
     found = feasibility(read_case(CASE).vary(SHORT), 600.0, 1200.0, 10, smallest=1e-6, largest=2e-3)
     frequencies, slips, lost, _ = found.borders()
     picked = pick(found, float(frequencies[0]), float(np.sqrt(slips[0] * lost[0])))
-    assert run_case(read_case(picked.write(tmp_path / "picked.toml"))).summary.path_length > 0
+    assert run_case(read_case(write_case(picked.case, tmp_path / "picked.toml"))).summary.path_length > 0
     for stroke, what in (
         (0.9 * slips[0], "where it stays at rest"),
         (1.0002 * slips[0], r"where it moves only [\d.]+ [np]m"),
