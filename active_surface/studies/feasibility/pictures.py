@@ -22,6 +22,7 @@ from coupling.pictures import PlateView, draw_plate, put_title
 GREEN, PALE_RED, RED, BLUE, GREY, UNKNOWN = "#8cc7a1", "#e8b0a4", "#c8371b", "#40719c", "#8a8a8a", "#d6d6d6"
 PARTS: Final = 12  # of the way from one column of the chart to the next
 AROUND: Final = 1.8  # times what is drawn: the ends of the axis of strokes, at most to those looked at and the case
+ABOVE: Final = 1.2  # times the case: room for its mark below the title
 CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
 SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
@@ -104,7 +105,7 @@ def _draw_chart(axes: Axes, feasibility: Feasibility, picked: tuple[float, float
 def _ends(columns: FloatArray, own: float, strokes: FloatArray) -> tuple[float, float]:
     """The least and the largest stroke drawn: around the borders and the case, of those looked at and to the case."""
     drawn = np.append(columns[np.isfinite(columns)], own)
-    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own))
+    return max(drawn.min() / AROUND, min(strokes[0], own)), min(drawn.max() * AROUND, max(strokes[1], own * ABOVE))
 
 
 def _draw_validity(
